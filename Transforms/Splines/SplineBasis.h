@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "Core/Box.h"
+#include "Core/Point.h"
+#include "Core/Raster.h"
+
+namespace crease {
+
+template <int Dim>
+class BoundGrid;
+
+/// Number of distinct second derivatives: xx, xy, yy (2D); xx, xy, xz, yy, yz, zz (3D).
+template <int Dim>
+inline constexpr int kNumSecondDerivatives = Dim*(Dim + 1) / 2;
+
+/// The basis functions that do not vanish at one point.
+template <int Dim>
+struct BasisValues {
+  std::vector<int> control_points;  ///< their control points, each once, ascending
+  Eigen::VectorXd values;           ///< B_i(x); they sum to 1
+  Eigen::Matrix<double, Dim, Eigen::Dynamic> gradients;  ///< 1/mm; empty unless asked for
+  Eigen::Matrix<double, kNumSecondDerivatives<Dim>, Eigen::Dynamic> hessians;  ///< 1/mm^2; likewise
+};
+
+/// A cell in which every basis function is one polynomial, with the points of a Gauss rule in it.
+template <int Dim>
+struct QuadratureElement {
+  std::vector<int> control_points;  ///< k functions that do not vanish in the cell
+  int region = -1;  ///< body label of the patch that holds the cell; -1: the basis has no regions
+  int patch = -1;   ///< number of that patch (triangle, knot span)
+  bool in_band =
+      false;  ///< lies in the bending gap of a crease (feature-line theory: it carries no bending)
+  bool in_two_sided_band = false;  ///< same, of a crease without a body side: rigidity skips it too
+  Eigen::Matrix<double, Dim, Eigen::Dynamic> points;  ///< Dim x q, mm
+  Eigen::VectorXd weights;                            ///< q, sum = the cell's area or volume
+  Eigen::MatrixXd values;                             ///< k x q
+  std::vector<Eigen::MatrixXd> gradients;             ///< Dim matrices k x q, or empty
+  std::vector<Eigen::MatrixXd> hessians;  ///< kNumSecondDerivatives matrices k x q, or empty
+};
+
+/// Basis functions B_i on a domain that sum to 1 and contain the affine maps: what a spline transform
+/// is made of. Immutable; one basis may serve many transforms and threads.
+template <int Dim>
+class SplineBasis {
+ public:
+  virtual ~SplineBasis() = default;
+  virtual int num_control_points() const = 0;
+  virtual int degree() const = 0;
+  /// Continuous derivatives away from creases: degree - 1 unless built with less.
+  virtual int smoothness() const = 0;
+  /// Whether x lies in the closed domain.
+  virtual bool contains(const Point<Dim>& x) const = 0;
+  virtual Box<Dim> bounds() const = 0;
+  /// Area (mm^2) or volume (mm^3) of the domain.
+  virtual double measure() const = 0;
+  /// Mean edge length of the patches, mm.
+  virtual double mean_edge_length() const = 0;
+  /// The functions at x, with derivatives up to the order asked for (0, 1, 2). On lines where a
+  /// derivative jumps it is a one-sided limit from within the domain, the same for all functions.
+  /// @throws InvalidInput when x is outside the domain.
+  virtual BasisValues<Dim> evaluate(const Point<Dim>& x, int derivatives = 0) const = 0;
+  /// Control points of the identity map (Greville points): sum_i g_i B_i(x) = x.
+  virtual ControlPoints<Dim> greville_points() const = 0;
+  /// Cells that cover the domain, each with a Gauss rule exact for polynomials of the degree given, and
+  /// the functions' derivatives up to the order given. `wanted(region, patch)` chooses patches; null = all.
+  virtual std::vector<QuadratureElement<Dim>> quadrature(
+      int polynomial_degree, int derivatives,
+      const std::function<bool(int region, int patch)>& wanted = nullptr) const = 0;
+  /// Pairs i <= k of control points whose functions overlap: the sparsity of any local energy.
+  virtual std::vector<std::pair<int, int>> couplings() const = 0;
+  /// Prepares the basis for all samples of a raster. Samples outside the domain are not covered.
+  virtual std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const = 0;
+};
+
+}  // namespace crease

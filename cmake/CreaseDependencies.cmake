@@ -3,16 +3,21 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
+# GDCM, below ITK, lists the programs of its own that Debian packs separately as if that were an error.
+set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
 find_package(ITK 5.2 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOGDCM ITKIONIFTI ITKIOMeta
   ITKIONRRD ITKIOPNG ITKIOJPEG ITKIOTIFF ITKIOTransformBase ITKIOTransformInsightLegacy
   ITKIOTransformHDF5)
+unset(CMAKE_MESSAGE_LOG_LEVEL)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc video)
 find_package(nlohmann_json REQUIRED)
-find_package(tomlplusplus QUIET)
+find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(GSL REQUIRED IMPORTED_TARGET gsl)
 

@@ -1,0 +1,26 @@
+# cmake -D ROOT=<source tree> -P CheckFormat.cmake: fails when clang-format 14 would change a file.
+cmake_minimum_required(VERSION 3.25)
+
+find_program(clang_format NAMES clang-format-14 clang-format NO_CACHE)
+if(clang_format)
+  execute_process(COMMAND ${clang_format} --version OUTPUT_VARIABLE version)
+endif()
+if(NOT version MATCHES "version 14\\.")
+  message("skipped: clang-format 14 is not installed (Debian 12: apt-get install clang-format)")
+  return()
+endif()
+
+set(files)
+foreach(folder Core Images Transforms Optimizers Metrics Geometry Registration Applications Testing)
+  file(GLOB_RECURSE more RELATIVE ${ROOT} ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp)
+  list(APPEND files ${more})
+endforeach()
+execute_process(COMMAND ${clang_format} --dry-run --Werror ${files} WORKING_DIRECTORY ${ROOT}
+  RESULT_VARIABLE result ERROR_VARIABLE complaints)
+if(NOT result EQUAL 0)
+  string(REGEX MATCHALL "[^\n]+: error: code should be clang-formatted" lines "${complaints}")
+  list(TRANSFORM lines REPLACE ":[0-9]+:[0-9]+: error.*" "")
+  list(REMOVE_DUPLICATES lines)
+  list(JOIN lines " " text)
+  message(FATAL_ERROR "Call this in the root: clang-format -i ${text}")
+endif()

@@ -7,6 +7,7 @@
 
 #include "Core/Point.h"
 #include "Core/Raster.h"
+#include "Images/IntensityRange.h"
 
 namespace crease {
 
@@ -24,8 +25,12 @@ struct MappedRow {
 };
 
 /// Values of an image between its pixels, with the exact gradient of the interpolant.
-/// Outside the image (beyond the outer pixels' borders) the value is that of the nearest point of the
-/// border and the gradient is zero.
+///
+/// A point is inside when its continuous index lies in [-0.5, size - 0.5] along every axis: within the
+/// outer pixels' borders. Everywhere the value is the interpolant's at the index clamped to
+/// [0, size - 1], the centres of the outer pixels. Inside, the gradient is the exact gradient of that:
+/// no component along an axis whose index was clamped. Outside it is zero.
+/// A point that is not finite has the value NaN and is not inside.
 template <int Dim>
 class Interpolator {
  public:
@@ -44,6 +49,12 @@ class Interpolator {
   /// pointers: not wanted), and inside[i] = 1 or 0.
   virtual void evaluate_row(const MappedRow<Dim>& row, float* value,
                             const std::array<float*, Dim>& gradient, float* inside) const = 0;
+
+  /// Bounds that no value leaves, anywhere: the range of the coefficients.
+  virtual IntensityRange coefficient_range() const = 0;
+  /// Bounds that no value leaves at points within the pixels of the mask.
+  /// @param mask  of the image's size. @throws InvalidInput when it is not, or is empty.
+  virtual IntensityRange coefficient_range(const Mask<Dim>& mask) const = 0;
 };
 
 }  // namespace crease

@@ -1,0 +1,102 @@
+#include <cstdlib>
+#include <map>
+
+#include "Core/Error.h"
+#include "Images/Files/FileBytes.h"
+#include "Images/Files/FileChecks.h"
+#include "Images/Files/TextHeader.h"
+
+namespace crease {
+namespace {
+
+using Fields = std::map<std::string, std::string, std::less<>>;
+
+/// Reads "Key = value" lines up to ElementDataFile, the last one.
+Fields read_fields(const std::filesystem::path& path, std::string_view text, std::size_t& at) {
+  Fields fields;
+  while (!fields.contains("ElementDataFile")) {
+    std::optional<std::string_view> line = next_line(text, at);
+    if (!line && at < text.size()) {  // a header of its own need not end its last line
+      line = text.substr(at);
+      at = text.size();
+    }
+    const auto equals = line ? line->find('=') : std::string_view::npos;
+    if (equals == std::string_view::npos) {
+      if (line && trimmed(*line).empty()) continue;
+      fail(path, fields.empty() ? "this is not a MetaImage file"
+                                : "the header of the MetaImage file is truncated or damaged");
+    }
+    fields[std::string(trimmed(line->substr(0, equals)))] = trimmed(line->substr(equals + 1));
+  }
+  return fields;
+}
+
+std::string value_of(const Fields& fields, std::string_view key, const char* otherwise) {
+  const auto found = fields.find(key);
+  return found == fields.end() ? otherwise : found->second;
+}
+
+bool is_true(const std::string& value) {
+  return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
+}
+
+std::uint64_t bytes_of_type(const std::filesystem::path& path, std::string type) {
+  if (type.ends_with("_ARRAY")) type.resize(type.size() - 6);
+  static const std::map<std::string, std::uint64_t> kBytes{
+      {"MET_CHAR", 1},      {"MET_UCHAR", 1},      {"MET_SHORT", 2}, {"MET_USHORT", 2},
+      {"MET_INT", 4},       {"MET_UINT", 4},       {"MET_LONG", 4},  {"MET_ULONG", 4},
+      {"MET_LONG_LONG", 8}, {"MET_ULONG_LONG", 8}, {"MET_FLOAT", 4}, {"MET_DOUBLE", 8}};
+  const auto found = kBytes.find(type);
+  if (found == kBytes.end())
+    fail(path, message("MetaImage pixels of type '", type, "' are not supported"));
+  return found->second;
+}
+
+}  // namespace
+
+void check_meta_image(const std::filesystem::path& path) {
+  const auto bytes = read_bytes(path);
+  const std::string_view text = ByteReader(bytes, false).text(0, bytes.size());
+  std::size_t at = 0;
+  const Fields fields = read_fields(path, text, at);
+  const auto pixels = product_of_sizes(value_of(fields, "DimSize", ""));
+  const auto channels = product_of_sizes(value_of(fields, "ElementNumberOfChannels", "1"));
+  if (!fields.contains("DimSize") || pixels == 0 || channels == 0 ||
+      count_words(value_of(fields, "DimSize", ""), 100) !=
+          std::strtoull(value_of(fields, "NDims", "0").c_str(), nullptr, 10)) {
+    fail(path, "the sizes in the header of the MetaImage file are not valid");
+  }
+  const auto values = pixels * channels;
+  const auto needed = values * bytes_of_type(path, value_of(fields, "ElementType", "missing"));
+
+  const std::string name = value_of(fields, "ElementDataFile", "");
+  if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
+    fail(path, "pixels spread over several files are not supported; write them into one .mha file");
+  }
+  const bool local = name == "LOCAL" || name == "Local" || name == "local";
+  const auto data_path = local ? path : path.parent_path() / name;
+  if (!local && !std::filesystem::exists(data_path)) {
+    fail(path, message("its pixels, the file ", data_path.string(), ", are missing"));
+  }
+  const auto data = local ? std::vector<std::uint8_t>() : read_bytes(data_path);
+  const Bytes content = local ? Bytes(bytes).subspan(at) : Bytes(data);
+
+  if (is_true(value_of(fields, "CompressedData", "False"))) {
+    if (inflated_size(content) < needed) {
+      fail(data_path,
+           "the compressed pixels are truncated or damaged; copy or export the file again");
+    }
+  } else if (is_true(value_of(fields, "BinaryData", "True"))) {
+    const long skipped = local ? 0 : std::atol(value_of(fields, "HeaderSize", "0").c_str());
+    const auto total = needed + static_cast<std::uint64_t>(std::max(0l, skipped));
+    if (content.size() < total) fail_truncated(data_path, total, content.size());
+  } else {
+    const auto found = count_words(ByteReader(content, false).text(0, content.size()), values);
+    if (found < values) {
+      fail(data_path,
+           message("the file is truncated: it needs ", values, " numbers and has ", found));
+    }
+  }
+}
+
+}  // namespace crease

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -56,11 +57,19 @@ class SplineBasis {
   virtual int smoothness() const = 0;
   /// Whether x lies in the closed domain.
   virtual bool contains(const Point<Dim>& x) const = 0;
+  /// The domain's point nearest to x (x itself inside): from there maps continue outside the domain.
+  /// Unless overridden it is a point of the border towards x, near to the nearest one: the box's for
+  /// domains that fill their box, else the last on the way from x to the nearest Greville point inside.
+  virtual Point<Dim> nearest_point(const Point<Dim>& x) const;
   virtual Box<Dim> bounds() const = 0;
   /// Area (mm^2) or volume (mm^3) of the domain.
   virtual double measure() const = 0;
   /// Mean edge length of the patches, mm.
   virtual double mean_edge_length() const = 0;
+  /// Degree to ask of quadrature() for integrals of products of this many derivatives of that order.
+  virtual int product_degree(int factors, int derivative) const {
+    return std::max(0, factors * (degree() - derivative));
+  }
   /// The functions at x, with derivatives up to the order asked for (0, 1, 2). On lines where a
   /// derivative jumps it is a one-sided limit from within the domain, the same for all functions.
   /// @throws InvalidInput when x is outside the domain.
@@ -77,5 +86,8 @@ class SplineBasis {
   /// Prepares the basis for all samples of a raster. Samples outside the domain are not covered.
   virtual std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const = 0;
 };
+
+extern template class SplineBasis<2>;
+extern template class SplineBasis<3>;
 
 }  // namespace crease

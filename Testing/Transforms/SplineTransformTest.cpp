@@ -1,0 +1,94 @@
+#include "Transforms/SplineTransform.h"
+
+#include <gtest/gtest.h>
+
+#include "Core/Error.h"
+#include "Testing/Transforms/SampleSplines.h"
+
+namespace crease {
+namespace {
+
+template <int InDim, int OutDim>
+SplineTransform<InDim, OutDim> random_transform() {
+  SplineTransform<InDim, OutDim> transform(testing::small_basis<InDim>());
+  transform.set_control_points(
+      testing::Numbers().columns<OutDim>(transform.basis().num_control_points()));
+  return transform;
+}
+
+template <int InDim, int OutDim>
+void second_derivatives_match_differences() {
+  const auto transform = random_transform<InDim, OutDim>();
+  constexpr double kStep = 1e-5;
+  const auto& basis = dynamic_cast<const TensorBSplineBasis<InDim>&>(transform.basis());
+  for (const auto& x : testing::points_inside<InDim>(basis.lattice(), 10)) {
+    const auto second = transform.second_derivatives(x);
+    for (int b = 0; b < InDim; ++b) {
+      Vector<InDim> h = Vector<InDim>::Zero();
+      h[b] = kStep;
+      const auto difference =
+          ((transform.spatial_jacobian(x + h) - transform.spatial_jacobian(x - h)) / (2 * kStep))
+              .eval();
+      for (int c = 0; c < OutDim; ++c) {
+        EXPECT_LT((second[c].col(b).transpose() - difference.row(c)).norm(), 1e-8);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST(SplineTransform, SecondDerivativesMatchCentralDifferences) {
+  second_derivatives_match_differences<2, 2>();
+  second_derivatives_match_differences<3, 3>();
+  second_derivatives_match_differences<2, 3>();
+}
+
+TEST(SplineTransform, AddsTheSplineToTheAffinePart) {
+  AffineMap<2> affine;
+  affine.linear << 0, -1, 1, 0;
+  affine.offset = {3, 4};
+  SplineTransform<2> transform(testing::small_basis<2>(), affine);
+  const Point<2> x =
+      transform.basis().bounds().lower * 0.5 + transform.basis().bounds().upper * 0.5;
+  EXPECT_LT((transform.map(x) - affine(x)).norm(), 1e-14);
+  ControlPoints<2> shift = transform.control_points();
+  shift.colwise() += Vector<2>(1, -2);
+  transform.set_control_points(shift);
+  EXPECT_LT((transform.map(x) - affine(x) - Vector<2>(1, -2)).norm(), 1e-13);
+  EXPECT_LT((transform.spatial_jacobian(x) - affine.linear).norm(), 1e-13);
+}
+
+// Value and gradient go on across the border, along a straight line outside.
+TEST(SplineTransform, ContinuesLinearlyOutside) {
+  const auto transform = random_transform<2, 2>();
+  const auto& lattice = dynamic_cast<const TensorBSplineBasis<2>&>(transform.basis()).lattice();
+  const auto at = [&](double t) { return lattice.point({t, 1.7}); };
+  EXPECT_FALSE(transform.in_domain(at(-1)));
+  EXPECT_LT((transform.map(at(-1e-8)) - transform.map(at(1e-8))).norm(), 1e-6);
+  const Point<2> border = transform.map(at(0));
+  const Vector<2> slope = transform.spatial_jacobian(at(0)) * (at(1) - at(0));
+  for (double t : {-0.5, -1.0, -7.0}) {
+    EXPECT_LT((transform.map(at(t)) - (border + t * slope)).norm(), 1e-12);
+    EXPECT_TRUE(
+        transform.spatial_jacobian(at(t)).isApprox(transform.spatial_jacobian(at(0)), 1e-12));
+  }
+}
+
+TEST(SplineTransform, StacksParametersByControlPoint) {
+  auto transform = random_transform<2, 3>();
+  const auto p = transform.parameters();
+  EXPECT_EQ(p[3 * 5 + 2], transform.control_points()(2, 5));
+}
+
+TEST(SplineTransform, RefusesBadInput) {
+  EXPECT_THROW(SplineTransform<2>(nullptr), InvalidInput);
+  AffineMap<2> bad;
+  bad.offset[0] = std::nan("");
+  EXPECT_THROW(SplineTransform<2>(testing::small_basis<2>(), bad), InvalidInput);
+  SplineTransform<2> transform(testing::small_basis<2>());
+  EXPECT_THROW(transform.set_control_points(ControlPoints<2>::Zero(2, 3)), InvalidInput);
+  EXPECT_THROW(transform.map({std::nan(""), 0}), InvalidInput);
+}
+
+}  // namespace crease

@@ -1,0 +1,180 @@
+#include "Transforms/TransformFile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "Core/Error.h"
+#include "Testing/Transforms/SampleSplines.h"
+#include "Testing/Transforms/Splines/TestNets.h"
+#include "Transforms/RigidTransform.h"
+#include "Transforms/Splines/TriangularBSplineBasis.h"
+
+namespace crease {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+namespace fs = std::filesystem;
+
+class TransformFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(::testing::TempDir()) /
+        (std::string("crease_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path file() const { return folder_ / "transform.json"; }
+  std::string text() const {
+    std::ifstream stream(file());
+    std::stringstream content;
+    content << stream.rdbuf();
+    return content.str();
+  }
+  void write(const std::string& content) const { std::ofstream(file()) << content; }
+  /// Replaces one text of the file by another.
+  void change(const std::string& from, const std::string& to) const {
+    std::string content = text();
+    const auto at = content.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    write(content.replace(at, from.size(), to));
+  }
+  void save_spline() const {
+    SplineTransform<2> transform(testing::small_basis<2>());
+    save_transform(transform, file());
+  }
+  void expect_error(const std::string& part) const {
+    EXPECT_THAT(
+        [&] { load_transform<2>(file()); },
+        ThrowsMessage<FileError>(::testing::AllOf(HasSubstr(file().string()), HasSubstr(part))));
+  }
+
+ private:
+  fs::path folder_;
+};
+
+}  // namespace
+
+TEST_F(TransformFile, LeavesNoTemporaryFile) {
+  save_spline();
+  int files = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(file().parent_path())) ++files;
+  EXPECT_EQ(files, 1);
+}
+
+TEST_F(TransformFile, KeepsTheWholeSplineAndNothingElse) {
+  AffineMap<2> affine;
+  affine.linear << 0.1, 1.0 / 3, -2.0 / 7, 1e-300;
+  affine.offset = {1e17, -0.0};
+  const SplineTransform<2> transform(testing::small_basis<2>(4, 0.77), affine);
+  save_transform(transform, file());
+  const auto loaded = load_transform<2>(file());
+  const auto& spline = dynamic_cast<const SplineTransform<2>&>(*loaded);
+  EXPECT_EQ(spline.affine().linear, affine.linear);
+  EXPECT_EQ(spline.affine().offset, affine.offset);
+  EXPECT_TRUE(std::signbit(spline.affine().offset[1]));
+  const auto& basis = dynamic_cast<const TensorBSplineBasis<2>&>(spline.basis());
+  const auto& expected = dynamic_cast<const TensorBSplineBasis<2>&>(transform.basis());
+  EXPECT_EQ(basis.degree(), 4);
+  EXPECT_EQ(basis.lattice().spans, expected.lattice().spans);
+  EXPECT_EQ(basis.lattice().direction, expected.lattice().direction);
+  EXPECT_EQ(basis.lattice().origin, expected.lattice().origin);
+  EXPECT_EQ(basis.lattice().spacing, expected.lattice().spacing);
+}
+
+TEST_F(TransformFile, KeepsTheWholeKnotNet) {
+  auto net = testing::ring_net(3, 0.3, true);
+  ASSERT_FALSE(net.crease_edges.empty());
+  const SplineTransform<2> transform(std::make_shared<TriangularBSplineBasis<2>>(net));
+  save_transform(transform, file());
+  const auto loaded = load_transform<2>(file());
+  const auto& again = dynamic_cast<const TriangularBSplineBasis<2>&>(
+                          dynamic_cast<const SplineTransform<2>&>(*loaded).basis())
+                          .net();
+  EXPECT_EQ(again.degree, net.degree);
+  EXPECT_EQ(again.mesh.vertices, net.mesh.vertices);
+  EXPECT_EQ(again.mesh.simplices, net.mesh.simplices);
+  EXPECT_EQ(again.mesh.regions, net.mesh.regions);
+  EXPECT_EQ(again.clouds, net.clouds);
+  ASSERT_EQ(again.crease_edges.size(), net.crease_edges.size());
+  for (std::size_t e = 0; e < net.crease_edges.size(); ++e) {
+    EXPECT_EQ(again.crease_edges[e].vertices, net.crease_edges[e].vertices);
+    EXPECT_EQ(again.crease_edges[e].body_side, net.crease_edges[e].body_side);
+  }
+
+  change("\"body_side\": true", "\"body_side\": 1");
+  expect_error("\"basis.crease_edges[0].body_side\" is not true or false");
+  save_transform(transform, file());
+  change("\"degree\": 3", "\"degree\": 2");
+  expect_error("its contents contradict each other");
+}
+
+TEST_F(TransformFile, PeekTellsDimensionsAndType) {
+  save_transform(RigidTransform<3>(), file());
+  const auto info = peek_transform(file());
+  EXPECT_EQ(info.in_dim, 3);
+  EXPECT_EQ(info.out_dim, 3);
+  EXPECT_EQ(info.type, "rigid");
+}
+
+TEST_F(TransformFile, RefusesOtherDimensions) {
+  save_transform(RigidTransform<3>(), file());
+  expect_error("from 3D to 3D");
+}
+
+TEST_F(TransformFile, NamesAMissingFile) { expect_error("cannot be opened"); }
+
+TEST_F(TransformFile, RefusesWhatIsNoTransform) {
+  write("{\"a\": 1}");
+  expect_error("is not a transform file");
+  write("fixed_x,fixed_y\n1,2\n");
+  expect_error("is not a complete JSON file");
+  write("[1, 2]");
+  expect_error("is not a transform file");
+}
+
+TEST_F(TransformFile, RefusesATruncatedFile) {
+  save_spline();
+  write(text().substr(0, text().size() / 2));
+  expect_error("is not a complete JSON file");
+}
+
+TEST_F(TransformFile, RefusesALaterVersion) {
+  save_spline();
+  change("\"version\": 1", "\"version\": 2");
+  expect_error("version 2");
+}
+
+TEST_F(TransformFile, NamesTheEntryAtFault) {
+  save_spline();
+  change("\"degree\": 3", "\"degree\": 9");
+  expect_error("\"basis.degree\" is 9");
+  save_spline();
+  change("\"degree\": 3", "\"degree\": 2");
+  expect_error("\"control_points\" has");
+  save_spline();
+  change("\"spacing\"", "\"Spacing\"");
+  expect_error("\"basis.spacing\" is missing");
+  save_spline();
+  change("\"kind\": \"tensor\"", "\"kind\": \"wavelet\"");
+  expect_error("\"wavelet\" is unknown");
+  save_spline();
+  change("\"type\": \"spline\"", "\"type\": \"magic\"");
+  expect_error("\"magic\" is unknown");
+  save_spline();
+  change("\"affine_offset\": [\n  0.0,", "\"affine_offset\": [\n  null,");
+  expect_error("\"affine_offset[0]\" is not a number");
+}
+
+TEST_F(TransformFile, SaysWhenItCannotWrite) {
+  EXPECT_THAT([&] { save_transform(RigidTransform<2>(), file() / "below" / "a.json"); },
+              ThrowsMessage<FileError>(HasSubstr("cannot be written")));
+}
+
+}  // namespace crease

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "Transforms/BlockHessian.h"
+
+namespace crease {
+
+/// phi -> 1/2 sum over coordinates j of phi_j^T K phi_j: a quadratic energy that treats all coordinates
+/// alike. K is n x n, symmetric positive semi-definite.
+template <int Dim>
+class QuadraticForm {
+ public:
+  explicit QuadraticForm(Eigen::SparseMatrix<double> matrix) : matrix_(std::move(matrix)) {}
+
+  const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
+  /// As Energy::evaluate.
+  double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
+                  ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const;
+
+ private:
+  Eigen::SparseMatrix<double> matrix_;
+};
+
+extern template class QuadraticForm<2>;
+extern template class QuadraticForm<3>;
+
+}  // namespace crease

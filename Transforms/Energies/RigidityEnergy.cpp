@@ -1,0 +1,241 @@
+#include "Transforms/Energies/RigidityEnergy.h"
+
+#include "Core/Error.h"
+#include "Core/Parallel.h"
+#include "Transforms/Energies/ScalarAssembly.h"
+
+namespace crease {
+namespace {
+
+/// The weights at the element's points, null: 1.
+template <int Dim>
+Eigen::VectorXd weights_at_points(const QuadratureElement<Dim>& element,
+                                  const WeightField<Dim>& weights, WeightRange& range) {
+  Eigen::VectorXd w = Eigen::VectorXd::Ones(element.weights.size());
+  if (!weights) return w;
+  for (Eigen::Index q = 0; q < w.size(); ++q) w[q] = weights(element.points.col(q), element.region);
+  range.add(w.minCoeff<Eigen::PropagateNaN>(), w.maxCoeff<Eigen::PropagateNaN>());
+  return w;
+}
+
+/// Gradients of the functions at the points that carry weight, side by side: k x (Dim q).
+template <int Dim>
+Eigen::MatrixXd gathered_gradients(const QuadratureElement<Dim>& element,
+                                   const std::vector<Eigen::Index>& points) {
+  const auto q = std::ssize(points);
+  Eigen::MatrixXd all(element.gradients[0].rows(), Dim * q);
+  for (int a = 0; a < Dim; ++a) {
+    for (Eigen::Index n = 0; n < q; ++n) all.col(a * q + n) = element.gradients[a].col(points[n]);
+  }
+  return all;
+}
+
+/// grad T at point p of a cell from the cell's Dim x (Dim q) table.
+template <int Dim>
+Matrix<Dim> deformation(const ControlPoints<Dim>& table, Eigen::Index p, Eigen::Index q) {
+  Matrix<Dim> f;
+  for (int a = 0; a < Dim; ++a) f.col(a) = table.col(a * q + p);
+  return f;
+}
+
+template <int Dim>
+Matrix<Dim> green_strain(const Matrix<Dim>& f) {
+  return 0.5 * (f.transpose() * f - Matrix<Dim>::Identity());
+}
+
+/// J with J J^T = sum over points and pairs (s, t) of w dE_st dE_st^T: row Dim i + j and column
+/// (s, t, point) hold sqrt(w) dE_st/dphi_ij = sqrt(w)/2 (F_js B_i,t + F_jt B_i,s); pairs s < t stand for
+/// (t, s) too.
+template <int Dim>
+Eigen::MatrixXd strain_rows(const Eigen::MatrixXd& gradients, const ControlPoints<Dim>& table,
+                            const Eigen::VectorXd& weights) {
+  const Eigen::Index k = gradients.rows(), q = weights.size();
+  Eigen::MatrixXd rows(Dim * k, kNumSecondDerivatives<Dim> * q);
+  for (Eigen::Index p = 0; p < q; ++p) {
+    const Matrix<Dim> f = deformation<Dim>(table, p, q);
+    for (int s = 0, pair = 0; s < Dim; ++s) {
+      for (int t = s; t < Dim; ++t, ++pair) {
+        const double factor = 0.5 * std::sqrt(weights[p] * (s == t ? 1 : 2));
+        Eigen::Map<ControlPoints<Dim>> column(rows.col(pair * q + p).data(), Dim, k);
+        column.noalias() = (factor * f.col(s)) * gradients.col(t * q + p).transpose() +
+                           (factor * f.col(t)) * gradients.col(s * q + p).transpose();
+      }
+    }
+  }
+  return rows;
+}
+
+/// k x k: sum over points of w grad B_i . E grad B_k, what Gauss-Newton leaves out.
+template <int Dim>
+Eigen::MatrixXd geometric_term(const Eigen::MatrixXd& gradients, const ControlPoints<Dim>& table,
+                               const Eigen::VectorXd& weights) {
+  const Eigen::Index q = weights.size();
+  Eigen::MatrixXd strained = Eigen::MatrixXd::Zero(gradients.rows(), Dim * q);  // w E grad B_i
+  for (Eigen::Index p = 0; p < q; ++p) {
+    const Matrix<Dim> strain = weights[p] * green_strain<Dim>(deformation<Dim>(table, p, q));
+    for (int s = 0; s < Dim; ++s) {
+      for (int t = 0; t < Dim; ++t) {
+        strained.col(s * q + p) += strain(s, t) * gradients.col(t * q + p);
+      }
+    }
+  }
+  return gradients * strained.transpose();
+}
+
+}  // namespace
+
+template <int Dim>
+RigidityEnergy<Dim>::RigidityEnergy(const SplineBasis<Dim>& basis, const WeightField<Dim>& weights,
+                                    const AffineMap<Dim>& affine,
+                                    const RigidityOptions<Dim>& options)
+    : linear_(affine.linear),
+      exact_hessian_(options.exact_hessian),
+      num_control_points_(basis.num_control_points()) {
+  if (!affine.finite()) throw InvalidInput("RigidityEnergy: the affine part is not finite.");
+  const int degree =
+      options.quadrature_degree >= 0 ? options.quadrature_degree : basis.product_degree(4, 1);
+  WeightRange range;
+  visit_quadrature<Dim>(basis, degree, 1, options.wanted,
+                        [&](auto& elements) { add_cells(elements, weights, range); });
+  range.check("RigidityEnergy");
+}
+
+template <int Dim>
+void RigidityEnergy<Dim>::add_cells(const std::vector<QuadratureElement<Dim>>& elements,
+                                    const WeightField<Dim>& weights, WeightRange& range) {
+  std::shared_ptr<const Eigen::MatrixXd> last;
+  for (const PatchRange& group : group_by_patch(elements)) {
+    Patch patch;
+    patch.control_points = group.control_points;
+    for (std::size_t e = group.begin; e < group.end; ++e) {
+      const auto& element = elements[e];
+      if (element.in_two_sided_band) continue;
+      const Eigen::VectorXd w = weights_at_points(element, weights, range);
+      std::vector<Eigen::Index> points;
+      for (Eigen::Index q = 0; q < w.size(); ++q) {
+        if (w[q] != 0) points.push_back(q);
+      }
+      if (points.empty()) continue;
+      Cell cell;
+      cell.positions = group.positions(element.control_points);
+      cell.weights = element.weights.cwiseProduct(w)(points);
+      weighted_measure_ += cell.weights.sum();
+      auto gradients = gathered_gradients(element, points);
+      // The spans of a lattice share one table.
+      if (!last || last->rows() != gradients.rows() || last->cols() != gradients.cols() ||
+          *last != gradients) {
+        last = std::make_shared<const Eigen::MatrixXd>(std::move(gradients));
+      }
+      cell.gradients = last;
+      patch.cells.push_back(std::move(cell));
+    }
+    if (!patch.cells.empty()) patches_.push_back(std::move(patch));
+  }
+}
+
+template <int Dim>
+void RigidityEnergy<Dim>::add_cell(const Cell& cell, const ControlPoints<Dim>& phi,
+                                   bool with_gradient, bool with_hessian, PatchSums& sums) const {
+  const Eigen::MatrixXd& gradients = *cell.gradients;
+  const Eigen::Index q = cell.weights.size();
+  ControlPoints<Dim> table(Dim, Dim * q);  // grad T
+  table.noalias() = phi(Eigen::all, cell.positions) * gradients;
+  for (int a = 0; a < Dim; ++a) table.middleCols(a * q, q).colwise() += linear_.col(a);
+
+  ControlPoints<Dim> stress(Dim, Dim * q);  // w F E
+  for (Eigen::Index p = 0; p < q; ++p) {
+    const Matrix<Dim> f = deformation<Dim>(table, p, q);
+    const Matrix<Dim> strain = green_strain<Dim>(f);
+    sums.energy += 0.5 * cell.weights[p] * strain.squaredNorm();
+    const Matrix<Dim> force = cell.weights[p] * f * strain;
+    for (int a = 0; a < Dim; ++a) stress.col(a * q + p) = force.col(a);
+  }
+  if (with_gradient) {
+    const ControlPoints<Dim> gradient = stress * gradients.transpose();
+    for (Eigen::Index i = 0; i < gradient.cols(); ++i) {
+      sums.gradient.col(cell.positions[i]) += gradient.col(i);
+    }
+  }
+  if (with_hessian) add_hessian(cell, table, sums);
+}
+
+template <int Dim>
+void RigidityEnergy<Dim>::add_hessian(const Cell& cell, const ControlPoints<Dim>& table,
+                                      PatchSums& sums) const {
+  const Eigen::MatrixXd& gradients = *cell.gradients;
+  const Eigen::Index k = gradients.rows();
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(Dim * k, Dim * k);
+  hessian.selfadjointView<Eigen::Lower>().rankUpdate(
+      strain_rows<Dim>(gradients, table, cell.weights));
+  if (exact_hessian_) {
+    const Eigen::MatrixXd scalar = geometric_term<Dim>(gradients, table, cell.weights);
+    for (Eigen::Index c = 0; c < k; ++c) {
+      for (Eigen::Index i = c; i < k; ++i) {
+        hessian.block<Dim, Dim>(Dim * i, Dim * c).diagonal().array() += scalar(i, c);
+      }
+    }
+  }
+  // Positions ascend, so the lower triangle stays the lower one.
+  for (Eigen::Index c = 0; c < k; ++c) {
+    for (Eigen::Index i = c; i < k; ++i) {
+      sums.hessian.template block<Dim, Dim>(Dim * cell.positions[i], Dim * cell.positions[c]) +=
+          hessian.block<Dim, Dim>(Dim * i, Dim * c);
+    }
+  }
+}
+
+template <int Dim>
+typename RigidityEnergy<Dim>::PatchSums RigidityEnergy<Dim>::evaluate_patch(
+    const Patch& patch, const Eigen::Ref<const ControlPoints<Dim>>& phi, bool with_gradient,
+    bool with_hessian) const {
+  const auto m = std::ssize(patch.control_points);
+  PatchSums sums;
+  if (with_gradient) sums.gradient.setZero(Dim, m);
+  if (with_hessian) sums.hessian.setZero(Dim * m, Dim * m);
+  const ControlPoints<Dim> local = phi(Eigen::all, patch.control_points);
+  for (const Cell& cell : patch.cells) add_cell(cell, local, with_gradient, with_hessian, sums);
+  return sums;
+}
+
+template <int Dim>
+double RigidityEnergy<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
+                                     ControlPoints<Dim>* gradient,
+                                     BlockHessian<Dim>* hessian) const {
+  if (phi.cols() != num_control_points_) {
+    throw InvalidInput(message("RigidityEnergy: ", phi.cols(), " control points given, ",
+                               num_control_points_, " expected."));
+  }
+  double energy = 0;
+  constexpr std::size_t kChunk = 128;  // patches whose sums are kept before they are added in order
+  for (std::size_t begin = 0; begin < patches_.size(); begin += kChunk) {
+    std::vector<PatchSums> sums(std::min(kChunk, patches_.size() - begin));
+    parallel_for(std::ssize(sums), [&](std::int64_t p) {
+      sums[p] = evaluate_patch(patches_[begin + p], phi, gradient != nullptr, hessian != nullptr);
+    });
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+      const auto& numbers = patches_[begin + p].control_points;
+      energy += sums[p].energy;
+      if (gradient) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+          gradient->col(numbers[i]) += scale * sums[p].gradient.col(i);
+        }
+      }
+      for (std::size_t i = 0; hessian && i < numbers.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          // Functions of one patch that share no cell do not couple.
+          const Matrix<Dim> block = sums[p].hessian.template block<Dim, Dim>(Dim * i, Dim * k);
+          if (!block.isZero(0)) hessian->add(numbers[i], numbers[k], scale * block);
+        }
+        const Matrix<Dim> lower = sums[p].hessian.template block<Dim, Dim>(Dim * i, Dim * i);
+        const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();
+        hessian->add(numbers[i], numbers[i], scale * diagonal);
+      }
+    }
+  }
+  return energy;
+}
+
+template class RigidityEnergy<2>;
+template class RigidityEnergy<3>;
+
+}  // namespace crease

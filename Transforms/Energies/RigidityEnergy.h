@@ -1,0 +1,81 @@
+#pragma once
+
+#include "Transforms/AffineMap.h"
+#include "Transforms/Energies/Energy.h"
+#include "Transforms/Energies/WeightField.h"
+#include "Transforms/Splines/SplineBasis.h"
+
+namespace crease {
+
+template <int Dim>
+struct RigidityOptions {
+  /// The true Hessian, which may be indefinite, instead of Gauss-Newton's.
+  bool exact_hessian = false;
+  /// Degree of the quadrature; negative: exact for weights that are constant in every cell.
+  int quadrature_degree = -1;
+  /// Patches that may carry weight; null: all. Saves the quadrature of the others.
+  std::function<bool(int region, int patch)> wanted;
+};
+
+/// E_R = 1/2 int w |E|_F^2 dx with the Green-St. Venant strain E = 1/2 (F^T F - I), F = grad T = A + grad u:
+/// zero exactly where T moves rigidly (or mirrors) the tissue of weight w.
+///
+///     dE_R/dphi_i = int w F E grad B_i dx
+///     Gauss-Newton block (i, k) = int w 1/2 [ F F^T (grad B_i . grad B_k) + (F grad B_k)(F grad B_i)^T ] dx
+///     exact: plus I int w (grad B_i . E grad B_k) dx
+///
+/// Cells without weight, and the bands of creases without a body side, are left out. Cost per cell: one
+/// symmetric product of the Dim k strain rows by the cell's points.
+///
+/// Source: dissertation, (3.6) and (4.2), whose 1/2 in E is kept.
+template <int Dim>
+class RigidityEnergy final : public Energy<Dim> {
+ public:
+  /// @param weights  null: 1 everywhere.
+  /// @param affine   the affine part of T.
+  /// @throws InvalidInput when a weight lies outside [0, 1].
+  explicit RigidityEnergy(const SplineBasis<Dim>& basis,
+                          const WeightField<Dim>& weights = body_weights<Dim>(),
+                          const AffineMap<Dim>& affine = {},
+                          const RigidityOptions<Dim>& options = {});
+
+  /// Integral of w over the cells that count, mm^Dim: what E_R is compared with.
+  double weighted_measure() const { return weighted_measure_; }
+  double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
+                  ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const override;
+
+ private:
+  struct Cell {
+    std::vector<int> positions;  // of its control points among the patch's
+    std::shared_ptr<const Eigen::MatrixXd>
+        gradients;            // k x (Dim q): d/dx_0 at all points, d/dx_1, ..
+    Eigen::VectorXd weights;  // q, w included
+  };
+  struct Patch {
+    std::vector<int> control_points;
+    std::vector<Cell> cells;
+  };
+  struct PatchSums {
+    double energy = 0;
+    ControlPoints<Dim> gradient;
+    Eigen::MatrixXd hessian;  // lower triangle
+  };
+  void add_cells(const std::vector<QuadratureElement<Dim>>& elements,
+                 const WeightField<Dim>& weights, WeightRange& range);
+  void add_cell(const Cell& cell, const ControlPoints<Dim>& phi, bool with_gradient,
+                bool with_hessian, PatchSums& sums) const;
+  void add_hessian(const Cell& cell, const ControlPoints<Dim>& table, PatchSums& sums) const;
+  PatchSums evaluate_patch(const Patch& patch, const Eigen::Ref<const ControlPoints<Dim>>& phi,
+                           bool with_gradient, bool with_hessian) const;
+
+  Matrix<Dim> linear_;
+  bool exact_hessian_;
+  double weighted_measure_ = 0;
+  int num_control_points_;
+  std::vector<Patch> patches_;
+};
+
+extern template class RigidityEnergy<2>;
+extern template class RigidityEnergy<3>;
+
+}  // namespace crease

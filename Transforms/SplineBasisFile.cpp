@@ -1,0 +1,153 @@
+#include "Transforms/SplineBasisFile.h"
+
+#include <limits>
+
+#include "Transforms/Splines/TensorBSplineBasis.h"
+#include "Transforms/Splines/TriangularBSplineBasis.h"
+
+namespace crease {
+namespace {
+
+using Json = nlohmann::json;
+
+template <int Dim>
+Json point_list(const Point<Dim>& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+template <int Dim>
+Json tensor_to_json(const TensorBSplineBasis<Dim>& basis) {
+  const auto& lattice = basis.lattice();
+  return {{"kind", "tensor"},
+          {"degree", basis.degree()},
+          {"spans", lattice.spans},
+          {"origin", point_list<Dim>(lattice.origin)},
+          {"spacing", point_list<Dim>(lattice.spacing)},
+          {"direction_columns",
+           std::vector<double>(lattice.direction.data(), lattice.direction.data() + Dim * Dim)}};
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> tensor_from_json(const JsonReader& reader) {
+  TensorLattice<Dim> lattice;
+  const JsonReader spans = reader.at("spans");
+  if (spans.size() != Dim)
+    reader.fail(message("the entry \"basis.spans\" needs ", Dim, " numbers"));
+  double control_points = 1;
+  for (int a = 0; a < Dim; ++a) {
+    lattice.spans[a] = spans.at(static_cast<std::size_t>(a)).integer(1, 1 << 20);
+    control_points *= lattice.spans[a];
+  }
+  if (control_points > 1e8) spans.fail_here("asks for too many control points");
+  lattice.origin = reader.at("origin").template numbers<Dim>();
+  lattice.spacing = reader.at("spacing").template numbers<Dim>();
+  lattice.direction = reader.at("direction_columns").template numbers<Dim, Dim>();
+  return std::make_shared<TensorBSplineBasis<Dim>>(
+      lattice, reader.at("degree").integer(1, kMaxTensorDegree));
+}
+
+/// Points one after the other in one list of numbers.
+template <int Dim>
+Json flat(const std::vector<Point<Dim>>& points) {
+  Json numbers = Json::array();
+  for (const auto& p : points) {
+    for (double c : p) numbers.push_back(c);
+  }
+  return numbers;
+}
+
+template <int Dim>
+std::vector<Point<Dim>> points_of(const JsonReader& reader) {
+  const auto count = reader.size() / Dim;
+  const auto columns = reader.numbers<Dim, Eigen::Dynamic>(static_cast<Eigen::Index>(count));
+  std::vector<Point<Dim>> points(count);
+  for (std::size_t n = 0; n < count; ++n) points[n] = columns.col(n);
+  return points;
+}
+
+template <int Dim>
+Json triangular_to_json(const KnotNet<Dim>& net) {
+  Json simplices = Json::array(), clouds = Json::array(), creases = Json::array();
+  for (const auto& simplex : net.mesh.simplices) simplices.push_back(simplex);
+  for (const auto& cloud : net.clouds) clouds.push_back(flat<Dim>(cloud));
+  for (const auto& edge : net.crease_edges) {
+    creases.push_back({{"vertices", edge.vertices}, {"body_side", edge.body_side}});
+  }
+  return {{"kind", "triangular"},
+          {"degree", net.degree},
+          {"vertices", flat<Dim>(net.mesh.vertices)},
+          {"simplices", simplices},
+          {"regions", net.mesh.regions},
+          {"clouds", clouds},
+          {"crease_edges", creases}};
+}
+
+/// A list of as many vertex numbers as the array holds.
+template <std::size_t Count>
+std::array<int, Count> vertex_numbers(const JsonReader& reader, std::size_t num_vertices) {
+  if (reader.size() != Count) reader.fail_here(message("does not have ", Count, " vertices"));
+  std::array<int, Count> numbers;
+  for (std::size_t k = 0; k < Count; ++k) {
+    numbers[k] = reader.at(k).integer(0, static_cast<int>(num_vertices) - 1);
+  }
+  return numbers;
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> triangular_from_json(const JsonReader& reader) {
+  KnotNet<Dim> net;
+  net.degree = reader.at("degree").integer(1, 5);
+  net.mesh.vertices = points_of<Dim>(reader.at("vertices"));
+  const auto num_vertices = net.mesh.vertices.size();
+  const JsonReader simplices = reader.at("simplices");
+  for (std::size_t n = 0; n < simplices.size(); ++n) {
+    net.mesh.simplices.push_back(vertex_numbers<Dim + 1>(simplices.at(n), num_vertices));
+  }
+  const JsonReader regions = reader.at("regions");
+  for (std::size_t n = 0; n < regions.size(); ++n) {
+    net.mesh.regions.push_back(regions.at(n).integer(0, std::numeric_limits<int>::max()));
+  }
+  if (!net.mesh.regions.empty() && net.mesh.regions.size() != net.mesh.simplices.size()) {
+    regions.fail_here("does not have one number per simplex");
+  }
+  const JsonReader clouds = reader.at("clouds");
+  for (std::size_t n = 0; n < clouds.size(); ++n)
+    net.clouds.push_back(points_of<Dim>(clouds.at(n)));
+  const JsonReader creases = reader.at("crease_edges");
+  for (std::size_t n = 0; n < creases.size(); ++n) {
+    const JsonReader edge = creases.at(n);
+    net.crease_edges.push_back(
+        {vertex_numbers<2>(edge.at("vertices"), num_vertices), edge.at("body_side").flag()});
+  }
+  return std::make_shared<TriangularBSplineBasis<Dim>>(std::move(net));
+}
+
+}  // namespace
+
+template <int Dim>
+nlohmann::json basis_to_json(const SplineBasis<Dim>& basis) {
+  if (const auto* tensor = dynamic_cast<const TensorBSplineBasis<Dim>*>(&basis)) {
+    return tensor_to_json(*tensor);
+  }
+  if (const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis)) {
+    return triangular_to_json(triangular->net());
+  }
+  throw InvalidInput("save_transform: splines of this kind cannot be written to a file.");
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> basis_from_json(const JsonReader& reader) {
+  const std::string kind = reader.at("kind").text();
+  if (kind == "tensor") return tensor_from_json<Dim>(reader);
+  if (kind == "triangular") return triangular_from_json<Dim>(reader);
+  reader.fail(message("the spline kind \"", kind, "\" is unknown"));
+}
+
+#define CREASE_INSTANTIATE(Dim)                                   \
+  template nlohmann::json basis_to_json(const SplineBasis<Dim>&); \
+  template std::shared_ptr<const SplineBasis<Dim>> basis_from_json<Dim>(const JsonReader&);
+CREASE_INSTANTIATE(2)
+CREASE_INSTANTIATE(3)
+#undef CREASE_INSTANTIATE
+
+}  // namespace crease

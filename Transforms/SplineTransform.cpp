@@ -1,0 +1,119 @@
+#include "Transforms/SplineTransform.h"
+
+#include "Core/Error.h"
+#include "Transforms/ParameterCheck.h"
+
+namespace crease {
+namespace {
+
+/// Weights w with u(x) = sum_i w_i phi_i inside and outside the domain.
+template <int Dim>
+BasisValues<Dim> continued(const SplineBasis<Dim>& basis, const Point<Dim>& x) {
+  if (basis.contains(x)) return basis.evaluate(x);
+  const Point<Dim> p = basis.nearest_point(x);
+  auto at_p = basis.evaluate(p, 1);
+  at_p.values += at_p.gradients.transpose() * (x - p);
+  return at_p;
+}
+
+}  // namespace
+
+template <int InDim, int OutDim>
+SplineTransform<InDim, OutDim>::SplineTransform(std::shared_ptr<const SplineBasis<InDim>> basis,
+                                                const Affine& affine)
+    : basis_(std::move(basis)), affine_(affine) {
+  if (!basis_) throw InvalidInput("SplineTransform: the basis is null.");
+  if (!affine_.finite()) throw InvalidInput("SplineTransform: the affine part is not finite.");
+  control_points_.setZero(OutDim, basis_->num_control_points());
+}
+
+template <int InDim, int OutDim>
+void SplineTransform<InDim, OutDim>::set_control_points(
+    const Eigen::Ref<const ControlPoints<OutDim>>& control_points) {
+  if (control_points.cols() != basis_->num_control_points()) {
+    throw InvalidInput(message("SplineTransform: ", control_points.cols(),
+                               " control points given, ", basis_->num_control_points(),
+                               " expected."));
+  }
+  if (!control_points.allFinite()) {
+    throw InvalidInput("SplineTransform: a control point is not finite.");
+  }
+  control_points_ = control_points;
+}
+
+template <int InDim, int OutDim>
+std::unique_ptr<Transform<InDim, OutDim>> SplineTransform<InDim, OutDim>::clone() const {
+  return std::make_unique<SplineTransform>(*this);
+}
+
+template <int InDim, int OutDim>
+Point<OutDim> SplineTransform<InDim, OutDim>::map(const Point<InDim>& x) const {
+  const auto here = continued(*basis_, x);
+  Point<OutDim> y = affine_(x);
+  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+    y += here.values[n] * control_points_.col(here.control_points[n]);
+  }
+  return y;
+}
+
+template <int InDim, int OutDim>
+Matrix<OutDim, InDim> SplineTransform<InDim, OutDim>::spatial_jacobian(
+    const Point<InDim>& x) const {
+  const auto here = basis_->evaluate(basis_->nearest_point(x), 1);
+  Matrix<OutDim, InDim> jacobian = affine_.linear;
+  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+    jacobian += control_points_.col(here.control_points[n]) * here.gradients.col(n).transpose();
+  }
+  return jacobian;
+}
+
+template <int InDim, int OutDim>
+std::array<Matrix<InDim>, OutDim> SplineTransform<InDim, OutDim>::second_derivatives(
+    const Point<InDim>& x) const {
+  const auto here = basis_->evaluate(basis_->nearest_point(x), 2);
+  std::array<Matrix<InDim>, OutDim> result;
+  result.fill(Matrix<InDim>::Zero());
+  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+    for (int a = 0, s = 0; a < InDim; ++a) {
+      for (int b = a; b < InDim; ++b, ++s) {
+        for (int c = 0; c < OutDim; ++c) {
+          result[c](a, b) += control_points_(c, here.control_points[n]) * here.hessians(s, n);
+        }
+      }
+    }
+  }
+  for (auto& m : result) m.template triangularView<Eigen::StrictlyLower>() = m.transpose();
+  return result;
+}
+
+template <int InDim, int OutDim>
+Eigen::VectorXd SplineTransform<InDim, OutDim>::parameters() const {
+  return control_points_.reshaped();
+}
+
+template <int InDim, int OutDim>
+void SplineTransform<InDim, OutDim>::set_parameters(
+    const Eigen::Ref<const Eigen::VectorXd>& parameters) {
+  check_parameters("SplineTransform", parameters, num_parameters());
+  control_points_.reshaped() = parameters;
+}
+
+template <int InDim, int OutDim>
+void SplineTransform<InDim, OutDim>::add_adjoint(std::span<const Point<InDim>> x,
+                                                 std::span<const Vector<OutDim>> forces,
+                                                 Eigen::Ref<Eigen::VectorXd> gradient) const {
+  check_adjoint("SplineTransform", x.size(), forces.size(), gradient.size(), num_parameters());
+  Eigen::Map<ControlPoints<OutDim>> columns(gradient.data(), OutDim, control_points_.cols());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const auto here = continued(*basis_, x[k]);
+    for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+      columns.col(here.control_points[n]) += here.values[n] * forces[k];
+    }
+  }
+}
+
+template class SplineTransform<2, 2>;
+template class SplineTransform<3, 3>;
+template class SplineTransform<2, 3>;
+
+}  // namespace crease

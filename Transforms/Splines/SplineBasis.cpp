@@ -1,0 +1,41 @@
+#include "Transforms/Splines/SplineBasis.h"
+
+#include <limits>
+
+#include "Core/Error.h"
+
+namespace crease {
+
+template <int Dim>
+Point<Dim> SplineBasis<Dim>::nearest_point(const Point<Dim>& x) const {
+  if (contains(x)) return x;
+  const Box<Dim> box = bounds();
+  const Point<Dim> clamped = x.cwiseMax(box.lower).cwiseMin(box.upper);
+  if (contains(clamped)) return clamped;
+
+  const ControlPoints<Dim> anchors = greville_points();
+  Point<Dim> inside = clamped;
+  double best = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < anchors.cols(); ++i) {
+    const double distance = (anchors.col(i) - x).squaredNorm();
+    if (distance < best && contains(anchors.col(i))) {
+      best = distance;
+      inside = anchors.col(i);
+    }
+  }
+  if (best == std::numeric_limits<double>::infinity()) {
+    throw InvalidInput(
+        "SplineBasis: no Greville point lies in the domain; its mesh is degenerate.");
+  }
+  Point<Dim> outside = clamped;
+  for (int step = 0; step < 50; ++step) {
+    const Point<Dim> middle = 0.5 * (inside + outside);
+    (contains(middle) ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+template class SplineBasis<2>;
+template class SplineBasis<3>;
+
+}  // namespace crease

@@ -1,0 +1,179 @@
+#include "Transforms/TransformFile.h"
+
+#include <fstream>
+#include <limits>
+
+#include "Transforms/AffineTransform.h"
+#include "Transforms/CompositeTransform.h"
+#include "Transforms/JsonReader.h"
+#include "Transforms/RigidTransform.h"
+#include "Transforms/SplineBasisFile.h"
+#include "Transforms/SplineTransform.h"
+
+namespace crease {
+namespace {
+
+using Json = nlohmann::json;
+constexpr auto kFormat = "crease transform";
+constexpr int kVersion = 1;
+
+template <typename Derived>
+Json list(const Eigen::MatrixBase<Derived>& values) {
+  Json numbers = Json::array();
+  for (Eigen::Index c = 0; c < values.cols(); ++c) {
+    for (Eigen::Index r = 0; r < values.rows(); ++r) numbers.push_back(values(r, c));
+  }
+  return numbers;
+}
+
+template <int InDim, int OutDim>
+Json spline_entries(const SplineTransform<InDim, OutDim>& spline) {
+  return {{"type", "spline"},
+          {"affine_matrix_rows", list(spline.affine().linear.transpose())},
+          {"affine_offset", list(spline.affine().offset)},
+          {"basis", basis_to_json(spline.basis())},
+          {"control_points", list(spline.control_points())}};
+}
+
+template <int InDim, int OutDim>
+Json entries(const Transform<InDim, OutDim>& transform) {
+  if (const auto* spline = dynamic_cast<const SplineTransform<InDim, OutDim>*>(&transform)) {
+    return spline_entries(*spline);
+  }
+  if constexpr (InDim == OutDim) {
+    if (const auto* affine = dynamic_cast<const AffineTransform<InDim>*>(&transform)) {
+      return {{"type", "affine"},
+              {"centre", list(affine->centre())},
+              {"parameters", list(affine->parameters())}};
+    }
+    if (const auto* rigid = dynamic_cast<const RigidTransform<InDim>*>(&transform)) {
+      return {{"type", "rigid"},
+              {"centre", list(rigid->centre())},
+              {"parameters", list(rigid->parameters())}};
+    }
+    if (const auto* composite = dynamic_cast<const CompositeTransform<InDim>*>(&transform)) {
+      Json parts = Json::array();
+      for (std::size_t k = 0; k < composite->num_parts(); ++k) {
+        parts.push_back(entries(composite->part(k)));
+      }
+      return {{"type", "composite"}, {"parts", parts}};
+    }
+  }
+  throw InvalidInput("save_transform: transforms of this class cannot be written to a file.");
+}
+
+template <int Dim, typename Kind>
+std::unique_ptr<Transform<Dim>> read_linear(const JsonReader& reader) {
+  auto transform = std::make_unique<Kind>(Point<Dim>(reader.at("centre").numbers<Dim>()));
+  transform->set_parameters(
+      reader.at("parameters").numbers<1, Eigen::Dynamic>(transform->num_parameters()).transpose());
+  return transform;
+}
+
+template <int InDim, int OutDim>
+std::unique_ptr<Transform<InDim, OutDim>> read_spline(const JsonReader& reader) {
+  AffineMap<InDim, OutDim> affine;
+  affine.linear = reader.at("affine_matrix_rows").numbers<InDim, OutDim>().transpose();
+  affine.offset = reader.at("affine_offset").numbers<OutDim>();
+  auto basis = basis_from_json<InDim>(reader.at("basis"));
+  const int n = basis->num_control_points();
+  auto transform = std::make_unique<SplineTransform<InDim, OutDim>>(std::move(basis), affine);
+  transform->set_control_points(reader.at("control_points").numbers<OutDim, Eigen::Dynamic>(n));
+  return transform;
+}
+
+template <int InDim, int OutDim>
+std::unique_ptr<Transform<InDim, OutDim>> read(const JsonReader& reader) {
+  const std::string type = reader.at("type").text();
+  if (type == "spline") return read_spline<InDim, OutDim>(reader);
+  if constexpr (InDim == OutDim) {
+    if (type == "affine") return read_linear<InDim, AffineTransform<InDim>>(reader);
+    if (type == "rigid") return read_linear<InDim, RigidTransform<InDim>>(reader);
+    if (type == "composite") {
+      const JsonReader list = reader.at("parts");
+      std::vector<std::unique_ptr<Transform<InDim>>> parts;
+      for (std::size_t k = 0; k < list.size(); ++k) parts.push_back(read<InDim, InDim>(list.at(k)));
+      return std::make_unique<CompositeTransform<InDim>>(std::move(parts));
+    }
+  }
+  reader.fail(message("the transform type \"", type, "\" is unknown"));
+}
+
+Json parse(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw FileError(message(file.string(), ": cannot be opened."));
+  try {
+    return Json::parse(stream);
+  } catch (const Json::exception& error) {
+    throw FileError(message(file.string(), ": is not a complete JSON file (", error.what(), ")."));
+  }
+}
+
+TransformFileInfo read_info(const JsonReader& reader) {
+  if (!reader.has("format") || reader.at("format").text() != kFormat) {
+    reader.fail(message("is not a transform file: \"format\" is not \"", kFormat, "\""));
+  }
+  const int version = reader.at("version").integer(1, std::numeric_limits<int>::max());
+  if (version > kVersion) {
+    reader.fail(message("has version ", version, "; this program reads versions up to ", kVersion));
+  }
+  const JsonReader dimensions = reader.at("dimensions");
+  if (dimensions.size() != 2) reader.fail("the entry \"dimensions\" is not a pair");
+  return {dimensions.at(std::size_t{0}).integer(2, 3), dimensions.at(std::size_t{1}).integer(2, 3),
+          reader.at("type").text()};
+}
+
+}  // namespace
+
+template <int InDim, int OutDim>
+void save_transform(const Transform<InDim, OutDim>& transform, const std::filesystem::path& file) {
+  Json json = entries(transform);
+  json["format"] = kFormat;
+  json["version"] = kVersion;
+  json["dimensions"] = {InDim, OutDim};
+  const std::filesystem::path temporary = file.string() + ".part";
+  {
+    std::ofstream stream(temporary);
+    stream << json.dump(1) << '\n';
+    if (!stream.flush()) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw FileError(message(file.string(), ": cannot be written."));
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, file, error);
+  if (error)
+    throw FileError(message(file.string(), ": cannot be written (", error.message(), ")."));
+}
+
+TransformFileInfo peek_transform(const std::filesystem::path& file) {
+  const Json json = parse(file);
+  return read_info(JsonReader(json, file.string()));
+}
+
+template <int InDim, int OutDim>
+std::unique_ptr<Transform<InDim, OutDim>> load_transform(const std::filesystem::path& file) {
+  const Json json = parse(file);
+  const JsonReader reader(json, file.string());
+  const auto info = read_info(reader);
+  if (info.in_dim != InDim || info.out_dim != OutDim) {
+    reader.fail(message("holds a transform from ", info.in_dim, "D to ", info.out_dim,
+                        "D; one from ", InDim, "D to ", OutDim, "D is needed"));
+  }
+  try {
+    return read<InDim, OutDim>(reader);
+  } catch (const InvalidInput& error) {
+    reader.fail(message("its contents contradict each other: ", error.what()));
+  }
+}
+
+#define CREASE_INSTANTIATE(In, Out)                                                      \
+  template void save_transform(const Transform<In, Out>&, const std::filesystem::path&); \
+  template std::unique_ptr<Transform<In, Out>> load_transform(const std::filesystem::path&);
+CREASE_INSTANTIATE(2, 2)
+CREASE_INSTANTIATE(3, 3)
+CREASE_INSTANTIATE(2, 3)
+#undef CREASE_INSTANTIATE
+
+}  // namespace crease

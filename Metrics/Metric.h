@@ -48,6 +48,13 @@ class Metric {
   /// After the last pass: the energy E. @throws SolverError when fewer than a quarter of the samples
   /// fall inside the moving image.
   virtual double finish_pass(int pass, std::span<const std::unique_ptr<Sums>> tiles) = 0;
+
+  /// The same value in double precision, one sample at a time: the reference for tests and for few
+  /// samples.
+  /// @param mapped  T(x), mm, for every sample of the fixed raster, in its order.
+  /// @param forces  dE/dT(x) per sample, overwritten; empty: not wanted.
+  virtual double evaluate(std::span<const Point<Dim>> mapped,
+                          std::span<Vector<Dim>> forces) const = 0;
 };
 
 }  // namespace crease

@@ -1,0 +1,103 @@
+#include "Registration/CreasedDomain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "Core/Parallel.h"
+#include "Transforms/Domains/LabelOutlines.h"
+#include "Transforms/Domains/Mesher.h"
+
+namespace crease {
+namespace {
+
+double edge_length_near_lines(const RegionOfInterest& region, const CreasedDomainOptions& options) {
+  if (options.edge_length_near_lines > 0) return options.edge_length_near_lines;
+  const double elsewhere =
+      options.edge_length > 0 ? options.edge_length : default_edge_length(region.bounds());
+  return elsewhere / 4;
+}
+
+void append(std::vector<std::string>& texts, const std::vector<std::string>& more) {
+  texts.insert(texts.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+bool CreasedDomain::has_bodies() const {
+  return std::ranges::any_of(mesh.mesh.regions, [](int region) { return region > 0; });
+}
+
+CreasedDomain make_creased_domain(const RegionOfInterest& region,
+                                  const std::vector<FeatureLine>& lines,
+                                  const CreasedDomainOptions& options) {
+  CreasedDomain domain;
+  domain.feature_lines = lines;
+  domain.mesh = mesh_domain(region, lines,
+                            {.edge_length = options.edge_length,
+                             .edge_length_near_lines = options.edge_length_near_lines,
+                             .gradation = options.gradation,
+                             .num_triangles = options.num_triangles,
+                             .line_tolerance = options.line_tolerance});
+  PlacedKnots knots =
+      place_knots(domain.mesh, {.degree = options.degree,
+                                .smoothness = options.smoothness,
+                                .creases = options.creases,
+                                .collapse_inside_bodies = options.creases && options.rigid_bodies});
+  domain.plan = std::move(knots.plan);
+  domain.basis = std::make_shared<const TriangularBSplineBasis<2>>(std::move(knots.net));
+  domain.notes = domain.mesh.notes;
+  domain.warnings = domain.mesh.warnings;
+  append(domain.warnings, domain.plan.warnings);
+  return domain;
+}
+
+CreasedDomain make_creased_domain(const RegionOfInterest& region, const LabelImage<2>& labels,
+                                  const std::vector<FeatureLine>& lines,
+                                  const CreasedDomainOptions& options) {
+  CreasedDomainOptions chosen = options;
+  if (!(chosen.line_tolerance > 0)) chosen.line_tolerance = labels.raster().spacing.maxCoeff();
+  const LabelOutlines outlines = label_outlines(
+      labels.raster(), labels.values(),
+      {.edge_length = edge_length_near_lines(region, chosen), .tolerance = chosen.line_tolerance});
+  std::vector<FeatureLine> all = outlines.lines;
+  all.insert(all.end(), lines.begin(), lines.end());
+  CreasedDomain domain = make_creased_domain(region, all, chosen);
+  domain.warnings.insert(domain.warnings.begin(), outlines.warnings.begin(),
+                         outlines.warnings.end());
+  return domain;
+}
+
+LabelImage<2> body_labels(const CreasedDomain& domain, const Raster<2>& raster) {
+  LabelImage<2> labels(raster);
+  const Vector<2> step = raster.index_to_point().col(0);
+  parallel_for(raster.num_rows(), [&](std::int64_t r) {
+    const auto row = labels.row(r);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const int simplex =
+          domain.basis->find_simplex(raster.row_start(r) + static_cast<double>(i) * step);
+      if (simplex >= 0) row[i] = domain.mesh.mesh.region(simplex);
+    }
+  });
+  return labels;
+}
+
+template <int Dim>
+WeightField<Dim> label_weights(const LabelImage<Dim>& labels) {
+  const auto image = std::make_shared<const LabelImage<Dim>>(labels);
+  return [image](const Point<Dim>& x, int) {
+    const Raster<Dim>& raster = image->raster();
+    const Vector<Dim> position = raster.index(x);
+    typename LabelImage<Dim>::Index index;
+    for (int a = 0; a < Dim; ++a) {
+      const double nearest = std::round(position[a]);
+      if (!(nearest >= 0 && nearest < raster.size[a])) return 0.0;
+      index[a] = static_cast<int>(nearest);
+    }
+    return (*image)[index] > 0 ? 1.0 : 0.0;
+  };
+}
+
+template WeightField<2> label_weights<2>(const LabelImage<2>&);
+template WeightField<3> label_weights<3>(const LabelImage<3>&);
+
+}  // namespace crease

@@ -1,0 +1,268 @@
+#include "Registration/InitialAlignment.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "Core/Error.h"
+#include "Images/CubicBSplineInterpolator.h"
+#include "Images/Moments.h"
+#include "Images/Pyramid.h"
+#include "Metrics/SumOfSquaredDifferences.h"
+#include "Optimizers/GaussNewton.h"
+#include "Optimizers/NelderMead.h"
+#include "Registration/AffineObjective.h"
+#include "Registration/ImageLevels.h"
+#include "Registration/SamplesInside.h"
+#include "Transforms/AffineTransform.h"
+#include "Transforms/LandmarkFits.h"
+#include "Transforms/RigidTransform.h"
+
+namespace crease {
+namespace {
+
+template <int Dim>
+AffineMap<Dim> translation(const Vector<Dim>& shift) {
+  AffineMap<Dim> map;
+  map.offset = shift;
+  return map;
+}
+
+template <int Dim>
+AffineMap<Dim> start_map(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
+                         const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
+                         const Landmarks<Dim>& landmarks, const AlignmentOptions& options) {
+  switch (options.start) {
+    case AlignmentStart::kIdentity:
+      return {};
+    case AlignmentStart::kCentres:
+      return translation<Dim>(geometric_centre(moving.raster()) - geometric_centre(fixed.raster()));
+    case AlignmentStart::kMoments:
+      return translation<Dim>(moments(moving, moving_mask).centre -
+                              moments(fixed, fixed_mask).centre);
+    case AlignmentStart::kLandmarks:
+      if (options.search == AlignmentSearch::kAffine) {
+        return fit_affine<Dim>(landmarks.fixed, landmarks.moving).affine_map();
+      }
+      return fit_rigid<Dim>(landmarks.fixed, landmarks.moving).affine_map();
+  }
+  return {};
+}
+
+template <int Dim>
+std::string box_text(const Box<Dim>& box) {
+  const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "(", ")");
+  return message(box.lower.transpose().format(row), " to ", box.upper.transpose().format(row),
+                 " mm");
+}
+
+template <int Dim>
+void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
+                     const AffineMap<Dim>& map) {
+  Box<Dim> mapped;
+  const Box<Dim> box = fixed.bounds();
+  for (int corner = 0; corner < (1 << Dim); ++corner) {
+    Point<Dim> p = box.lower;
+    for (int a = 0; a < Dim; ++a) {
+      if (corner >> a & 1) p[a] = box.upper[a];
+    }
+    mapped.add(map(p));
+  }
+  if (mapped.intersects(moving.bounds())) return;
+  throw InvalidInput(message("the images do not overlap: the fixed image covers ", box_text(mapped),
+                             " after the start, the moving image ", box_text(moving.bounds()),
+                             "; check their origins and directions, or start with --init centres"));
+}
+
+/// The metric of one level of the pyramid, in the frame of its search.
+template <int Dim>
+struct SearchLevel {
+  std::shared_ptr<Metric<Dim>> metric;
+  Point<Dim> centroid;
+  double radius = 1;  // mm, centroid to the farthest corner
+  double pixel = 1;   // mm
+  double weight = 1;  // sum of weights times sample volume
+};
+
+/// @param start  samples that it maps outside the moving image do not count.
+template <int Dim>
+SearchLevel<Dim> search_level(const ImageLevel<Dim>& level, const AffineMap<Dim>& start) {
+  SearchLevel<Dim> search;
+  MetricInput<Dim> input{level.fixed, level.weights, level.moving, level.moving_mask};
+  const Raster<Dim>& raster = level.fixed.raster();
+  keep_samples_inside<Dim>(raster, start, level.moving->raster(), input.weights);
+  Point<Dim> sum = Point<Dim>::Zero();
+  double weight = 0;
+  for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
+    for (int i = 0; i < raster.size[0]; ++i) {
+      const double w = input.weights[static_cast<std::size_t>(r * raster.size[0] + i)];
+      sum += w * (raster.row_start(r) + i * raster.index_to_point().col(0));
+      weight += w;
+    }
+  }
+  search.metric = std::make_shared<SumOfSquaredDifferences<Dim>>(std::move(input));
+  search.centroid = sum / weight;
+  const Box<Dim> box = raster.bounds();
+  search.radius = (box.upper - search.centroid).cwiseMax(search.centroid - box.lower).norm();
+  search.pixel = raster.spacing.minCoeff();
+  search.weight = weight * raster.sample_volume();
+  return search;
+}
+
+/// The objective of a level; parameters of the map given.
+template <int Dim>
+struct SearchStart {
+  AffineObjective<Dim> objective;
+  Eigen::VectorXd parameters;
+};
+
+template <int Dim>
+SearchStart<Dim> search_start(const SearchLevel<Dim>& level, const AffineMap<Dim>& map,
+                              bool rigid) {
+  std::unique_ptr<Transform<Dim>> transform;
+  if (rigid) {
+    transform = std::make_unique<RigidTransform<Dim>>(map, level.centroid);
+  } else {
+    transform = std::make_unique<AffineTransform<Dim>>(map, level.centroid);
+  }
+  const Eigen::VectorXd parameters = transform->parameters();
+  return {AffineObjective<Dim>(level.metric, std::move(transform), level.centroid, level.radius),
+          parameters};
+}
+
+/// Steps that move the farthest corner by one pixel of the level: angles first, then translation.
+template <int Dim>
+Eigen::VectorXd unit_steps(const SearchLevel<Dim>& level) {
+  constexpr int kAngles = Dim == 2 ? 1 : 3;
+  Eigen::VectorXd steps(kAngles + Dim);
+  steps.head(kAngles).setConstant(level.pixel / level.radius);
+  steps.tail(Dim).setConstant(level.pixel);
+  return steps;
+}
+
+/// Nelder-Mead from a few angles at the coarsest level.
+template <int Dim>
+AffineMap<Dim> coarse_search(const SearchLevel<Dim>& level, const AffineMap<Dim>& start,
+                             bool try_angles, int& evaluations) {
+  SearchStart<Dim> search = search_start(level, start, true);
+  const Eigen::VectorXd units = unit_steps(level);
+  const auto value = [&](const Eigen::VectorXd& parameters) {
+    ++evaluations;
+    try {
+      return search.objective.evaluate(parameters, nullptr, nullptr);
+    } catch (const SolverError&) {  // too little overlap
+      return std::numeric_limits<double>::infinity();
+    }
+  };
+  NelderMeadOptions options;
+  options.size_tolerance = 0.05;
+  options.max_evaluations = 500;
+  std::vector<double> angles = {0};
+  if (try_angles && Dim == 2) angles = {0, -30, -15, 15, 30};
+  double best = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd best_parameters = search.parameters;
+  for (double angle : angles) {
+    Eigen::VectorXd from = search.parameters;
+    from[0] += angle * std::numbers::pi / 180;
+    if (!std::isfinite(value(from))) continue;
+    const auto scaled = [&](const Eigen::VectorXd& u) {
+      return value(from + units.cwiseProduct(u));
+    };
+    const NelderMeadResult found =
+        nelder_mead(scaled, Eigen::VectorXd::Zero(from.size()),
+                    Eigen::VectorXd::Constant(from.size(), 4.0), options);
+    if (found.value < best) {
+      best = found.value;
+      best_parameters = from + units.cwiseProduct(found.x);
+    }
+  }
+  return search.objective.map(best_parameters);
+}
+
+/// Gauss-Newton at one level; keeps the start when nothing better is found.
+template <int Dim>
+AffineMap<Dim> refine(const SearchLevel<Dim>& level, const AffineMap<Dim>& start, bool rigid,
+                      int& evaluations) {
+  SearchStart<Dim> search = search_start(level, start, rigid);
+  const OptimizerOptions stopping{.step_length = 1e-4, .max_iterations = 50};
+  const GaussNewtonOptions options{.linear_solver = {.kind = LinearSolver::kDirect}};
+  const OptimizerResult found =
+      GaussNewton(stopping, options).minimize(search.objective, search.parameters);
+  evaluations += found.num_evaluations;
+  return search.objective.map(found.x);
+}
+
+template <int Dim>
+double mean_square(const SearchLevel<Dim>& level, const AffineMap<Dim>& map) {
+  SearchStart<Dim> search = search_start(level, map, false);
+  return 2 * search.objective.evaluate(search.parameters, nullptr, nullptr) / level.weight;
+}
+
+template <int Dim>
+double rotation_angle_deg(const Matrix<Dim>& linear) {
+  const Eigen::JacobiSVD<Matrix<Dim>> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix<Dim> rotation = svd.matrixU() * svd.matrixV().transpose();
+  if constexpr (Dim == 2) {
+    return std::atan2(rotation(1, 0), rotation(0, 0)) * 180 / std::numbers::pi;
+  }
+  return std::acos(std::clamp((rotation.trace() - 1) / 2, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+template <int Dim>
+Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
+                     const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
+                     const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
+                     const RegistrationCallback& progress) {
+  Alignment<Dim> result;
+  result.map = start_map(fixed, moving, fixed_mask, moving_mask, landmarks, options);
+  require_overlap(fixed.raster(), moving.raster(), result.map);
+  const AffineMap<Dim> start = result.map;
+  const int largest = *std::max_element(fixed.size().begin(), fixed.size().end());
+  const int levels =
+      1 + std::max(0, static_cast<int>(std::lround(std::log2(std::max(1.0, largest / 64.0)))));
+  const auto pyramid = image_levels(fixed, moving, fixed_mask, moving_mask,
+                                    options.search == AlignmentSearch::kNone ? 1 : levels);
+  const SearchLevel<Dim> finest = search_level(pyramid.back(), start);
+  result.report.metric_before = mean_square(finest, start);
+  if (options.search != AlignmentSearch::kNone) {
+    for (std::size_t l = 0; l < pyramid.size(); ++l) {
+      const SearchLevel<Dim> level = search_level(pyramid[l], result.map);
+      if (progress && !progress({.stage = "alignment",
+                                 .level = static_cast<int>(l) + 1,
+                                 .num_levels = static_cast<int>(pyramid.size())})) {
+        break;
+      }
+      int& evaluations = result.report.evaluations;
+      if (l == 0 && options.start != AlignmentStart::kLandmarks) {
+        result.map = coarse_search(level, result.map, options.try_angles, evaluations);
+      }
+      const bool rigid = options.search == AlignmentSearch::kRigid;
+      for (int again = 0; again < 2; ++again) {  // with the samples that are inside by then
+        result.map = refine(search_level(pyramid[l], result.map), result.map, rigid, evaluations);
+      }
+    }
+  }
+  result.report.metric_after = mean_square(finest, result.map);
+  if (result.report.metric_after > result.report.metric_before) {
+    result.map = start;
+    result.report.metric_after = result.report.metric_before;
+    result.report.improved = false;
+  }
+  result.report.angle_deg = rotation_angle_deg<Dim>(result.map.linear);
+  result.report.shift_mm = (result.map(finest.centroid) - finest.centroid).norm();
+  return result;
+}
+
+template Alignment<2> align<2>(const Image<float, 2>&, const Image<float, 2>&, const Mask<2>*,
+                               const Mask<2>*, const Landmarks<2>&, const AlignmentOptions&,
+                               const RegistrationCallback&);
+template Alignment<3> align<3>(const Image<float, 3>&, const Image<float, 3>&, const Mask<3>*,
+                               const Mask<3>*, const Landmarks<3>&, const AlignmentOptions&,
+                               const RegistrationCallback&);
+
+}  // namespace crease

@@ -1,0 +1,161 @@
+#include "Registration/Registration.h"
+
+#include <cmath>
+
+#include "Core/Error.h"
+#include "Metrics/SumOfSquaredDifferences.h"
+#include "Registration/RegistrationParts.h"
+#include "Registration/RegistrationRun.h"
+#include "Transforms/Energies/BendingEnergy.h"
+#include "Transforms/Energies/RigidityEnergy.h"
+
+namespace crease {
+
+template <int Dim>
+MetricFactory<Dim> ssd() {
+  return [](MetricInput<Dim> input) {
+    return std::make_unique<SumOfSquaredDifferences<Dim>>(std::move(input));
+  };
+}
+
+template <int Dim>
+EnergyFactory<Dim> bending(WeightField<Dim> rigid) {
+  return [rigid](const SplineBasis<Dim>& basis, const AffineMap<Dim>&) {
+    return std::make_shared<BendingEnergy<Dim>>(basis, rigid);
+  };
+}
+
+template <int Dim>
+EnergyFactory<Dim> rigidity(WeightField<Dim> rigid) {
+  return [rigid](const SplineBasis<Dim>& basis, const AffineMap<Dim>& affine) {
+    return std::make_shared<RigidityEnergy<Dim>>(basis, rigid, affine);
+  };
+}
+
+template <int Dim>
+Registration<Dim>::Registration() : parts_(std::make_shared<RegistrationParts<Dim>>()) {}
+
+template <int Dim>
+Registration<Dim>::Registration(Image<float, Dim> fixed, Image<float, Dim> moving)
+    : Registration() {
+  if (fixed.empty() || moving.empty()) {
+    throw InvalidInput(
+        message("registration: the ", fixed.empty() ? "fixed" : "moving", " image is empty"));
+  }
+  parts_->fixed = std::move(fixed);
+  parts_->moving = std::move(moving);
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::fixed_mask(Mask<Dim> mask) {
+  parts_->fixed_mask = std::move(mask);
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::moving_mask(Mask<Dim> mask) {
+  parts_->moving_mask = std::move(mask);
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::interpolation(InterpolationKind kind) {
+  parts_->interpolation = kind;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::alignment(AlignmentOptions options) {
+  parts_->alignment = options;
+  parts_->initial.reset();
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::initial(AffineMap<Dim> map) {
+  if (!map.finite()) throw InvalidInput("registration: the initial map is not finite");
+  parts_->initial = map;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::basis(std::shared_ptr<const SplineBasis<Dim>> basis) {
+  parts_->basis = std::move(basis);
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::metric(MetricFactory<Dim> factory) {
+  parts_->metric = std::move(factory);
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::image_weight(double alpha) {
+  if (!(alpha >= 0) || !std::isfinite(alpha)) {
+    throw InvalidInput(message("registration: the image weight alpha is ", alpha,
+                               "; it must be a finite number, 0 or more"));
+  }
+  parts_->image_weight = alpha;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::energy(std::string name, double weight,
+                                             EnergyFactory<Dim> factory) {
+  if (!(weight >= 0) || !std::isfinite(weight)) {
+    throw InvalidInput(message("registration: the weight of the ", name, " energy is ", weight,
+                               "; it must be a finite number, 0 or more"));
+  }
+  if (factory == nullptr) throw InvalidInput(message("registration: no ", name, " energy given"));
+  parts_->energies.push_back({std::move(name), weight, std::move(factory)});
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::landmarks(Landmarks<Dim> landmarks, LandmarkOptions options) {
+  parts_->landmarks = std::move(landmarks);
+  parts_->landmark_options = options;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::null_space(NullSpaceKind kind) {
+  parts_->null_space = kind;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::optimizer(std::shared_ptr<const Optimizer> optimizer) {
+  parts_->optimizer = std::move(optimizer);
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::schedule(Schedule schedule) {
+  if (schedule.levels < 1 || schedule.levels > 12) {
+    throw InvalidInput(
+        message("registration: ", schedule.levels, " levels asked for; the range is 1 to 12"));
+  }
+  if (!(schedule.level_bending > 0)) {
+    throw InvalidInput("registration: level_bending must be positive");
+  }
+  parts_->schedule = schedule;
+  return *this;
+}
+
+template <int Dim>
+RegistrationResult<Dim> Registration<Dim>::run(const RegistrationCallback& progress) const {
+  return RegistrationRun<Dim>(*parts_, progress).execute();
+}
+
+template MetricFactory<2> ssd<2>();
+template MetricFactory<3> ssd<3>();
+template EnergyFactory<2> bending<2>(WeightField<2>);
+template EnergyFactory<3> bending<3>(WeightField<3>);
+template EnergyFactory<2> rigidity<2>(WeightField<2>);
+template EnergyFactory<3> rigidity<3>(WeightField<3>);
+template class Registration<2>;
+template class Registration<3>;
+
+}  // namespace crease

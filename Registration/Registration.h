@@ -1,0 +1,131 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Images/Image.h"
+#include "Images/MakeInterpolator.h"
+#include "Metrics/Metric.h"
+#include "Metrics/MetricInput.h"
+#include "Optimizers/NullSpace.h"
+#include "Optimizers/Optimizer.h"
+#include "Registration/InitialAlignment.h"
+#include "Registration/LandmarkConstraints.h"
+#include "Registration/Landmarks.h"
+#include "Registration/Progress.h"
+#include "Registration/RegistrationObjective.h"
+#include "Transforms/Energies/WeightField.h"
+#include "Transforms/SplineTransform.h"
+
+namespace crease {
+
+template <int Dim>
+struct RegistrationParts;
+
+/// Makes the metric of one level from that level's images.
+template <int Dim>
+using MetricFactory = std::function<std::unique_ptr<Metric<Dim>>(MetricInput<Dim>)>;
+
+/// Makes an energy when the basis and the affine map A of the run are known.
+template <int Dim>
+using EnergyFactory = std::function<std::shared_ptr<const Energy<Dim>>(const SplineBasis<Dim>&,
+                                                                       const AffineMap<Dim>&)>;
+
+/// Bending of the soft tissue, weight (1 - w)^2 (BendingEnergy).
+template <int Dim>
+EnergyFactory<Dim> bending(WeightField<Dim> rigid = nullptr);
+
+/// Rigidity of the bodies, weight w (RigidityEnergy); the default w is 1 in regions above 0.
+template <int Dim>
+EnergyFactory<Dim> rigidity(WeightField<Dim> rigid = body_weights<Dim>());
+
+/// Sum of squared differences, the default metric.
+template <int Dim>
+MetricFactory<Dim> ssd();
+
+/// From coarse to fine.
+struct Schedule {
+  int levels = 3;            ///< image pyramid, a factor of 2 each; fewer for small images
+  double level_bending = 4;  ///< the energy named "bending" weighs this much more per coarser level
+  bool optical_flow = true;  ///< try a start fitted to dense optical flow (2D, same modality)
+  bool smooth_finest = true;  ///< low-pass [1 2 1]/4 at the finest level, against noise
+};
+
+/// What happened at one level.
+struct LevelReport {
+  int shrink = 1;
+  int iterations = 0;
+  int evaluations = 0;
+  int factorizations = 0;
+  std::string stopped_because;
+  std::map<std::string, double> terms_before, terms_after;  ///< unweighted, "image" the metric's
+  std::vector<double> energy_history;
+};
+
+template <int Dim>
+struct RegistrationResult {
+  std::shared_ptr<const SplineTransform<Dim>> transform;
+  AffineMap<Dim> initial;  ///< A: what the alignment found
+  AlignmentReport alignment;
+  std::map<std::string, double> energies;  ///< unweighted, at the finest level
+  double metric_before = 0;                ///< finest level, at A
+  double metric_after = 0;
+  std::vector<LevelReport> levels;
+  std::vector<double> landmark_errors_mm;
+  Eigen::Index free_parameters = 0;
+  std::string stopped_because;
+  bool converged = true;  ///< false: stopped by a limit or cancelled
+  bool improved = true;
+  std::map<std::string, double> timings_s;  ///< "alignment", "binding", "start", "optimization"
+  std::vector<std::string> warnings;
+};
+
+/// A registration, composed: two images, a spline basis for u in T(x) = A(x) + u(x), a metric, energies
+/// with weights, constraints, an optimizer and a schedule. Each part has a default; whatever is set
+/// replaces it. Any basis works with any metric, energies, constraints and optimizer.
+///
+///     Registration<2> registration(fixed, moving);
+///     registration.basis(basis).energy("bending", gamma, bending).landmarks(pairs);
+///     const auto result = registration.run();
+///
+/// Intensities are divided by the fixed image's 1..99 % range in its mask, so that weights do not
+/// depend on units. Source: dissertation, chapter 3.
+template <int Dim>
+class Registration {
+ public:
+  /// @throws InvalidInput when an image is empty or holds values that are not finite.
+  Registration(Image<float, Dim> fixed, Image<float, Dim> moving);
+  /// A registration by landmarks and energies alone, without images.
+  Registration();
+
+  Registration& fixed_mask(Mask<Dim> mask);
+  Registration& moving_mask(Mask<Dim> mask);
+  Registration& interpolation(InterpolationKind kind);
+  /// How A is found; the default starts from the centres of mass and stays there (no search).
+  Registration& alignment(AlignmentOptions options);
+  /// A is given.
+  Registration& initial(AffineMap<Dim> map);
+  Registration& basis(std::shared_ptr<const SplineBasis<Dim>> basis);
+  Registration& metric(MetricFactory<Dim> factory);
+  Registration& image_weight(double alpha);
+  Registration& energy(std::string name, double weight, EnergyFactory<Dim> factory);
+  Registration& landmarks(Landmarks<Dim> landmarks, LandmarkOptions options = {});
+  Registration& null_space(NullSpaceKind kind);
+  Registration& optimizer(std::shared_ptr<const Optimizer> optimizer);
+  Registration& schedule(Schedule schedule);
+
+  /// @throws InvalidInput, SolverError; see the parts.
+  RegistrationResult<Dim> run(const RegistrationCallback& progress = {}) const;
+
+ private:
+  std::shared_ptr<RegistrationParts<Dim>> parts_;
+};
+
+extern template class Registration<2>;
+extern template class Registration<3>;
+
+}  // namespace crease

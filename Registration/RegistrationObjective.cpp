@@ -1,0 +1,78 @@
+#include "Registration/RegistrationObjective.h"
+
+#include <cmath>
+
+#include "Core/Error.h"
+
+namespace crease {
+namespace {
+
+void require_finite(double value, const std::string& term) {
+  if (std::isfinite(value)) return;
+  throw SolverError(message("the ", term, " energy became ", value,
+                            " during the registration; lower the weights or start closer to the "
+                            "solution (--init landmarks, more levels)"));
+}
+
+}  // namespace
+
+template <int Dim>
+RegistrationObjective<Dim>::RegistrationObjective(std::shared_ptr<const HessianPattern> pattern,
+                                                  std::shared_ptr<ImageTerm<Dim>> image,
+                                                  double image_weight,
+                                                  std::vector<WeightedEnergy<Dim>> energies)
+    : pattern_(std::move(pattern)),
+      image_(std::move(image)),
+      image_weight_(image_weight),
+      energies_(std::move(energies)),
+      hessian_(pattern_) {}
+
+template <int Dim>
+Eigen::Index RegistrationObjective<Dim>::size() const {
+  return static_cast<Eigen::Index>(Dim) * pattern_->size();
+}
+
+template <int Dim>
+double RegistrationObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                            Eigen::VectorXd* gradient,
+                                            Eigen::SparseMatrix<double>* hessian) {
+  const Eigen::Map<const ControlPoints<Dim>> phi(x.data(), Dim, pattern_->size());
+  ControlPoints<Dim> forces;
+  ControlPoints<Dim>* forces_wanted = nullptr;
+  if (gradient != nullptr) {
+    forces = ControlPoints<Dim>::Zero(Dim, pattern_->size());
+    forces_wanted = &forces;
+  }
+  BlockHessian<Dim>* curvature = hessian != nullptr ? &hessian_ : nullptr;
+  if (curvature != nullptr) curvature->set_zero();
+
+  double value = 0;
+  if (image_ != nullptr && image_weight_ > 0) {
+    const double term = image_->evaluate(phi, image_weight_, forces_wanted, curvature);
+    require_finite(term, "image");
+    terms_["image"] = term;
+    value += image_weight_ * term;
+  }
+  for (const auto& [name, weight, energy] : energies_) {
+    const double term = energy->evaluate(phi, weight, forces_wanted, curvature);
+    require_finite(term, name);
+    terms_[name] = term;
+    value += weight * term;
+  }
+  if (gradient != nullptr) *gradient = forces.reshaped();
+  if (hessian != nullptr) *hessian = hessian_.to_sparse();
+  return value;
+}
+
+template <int Dim>
+double RegistrationObjective<Dim>::step_length(
+    const Eigen::Ref<const Eigen::VectorXd>& step) const {
+  if (image_ == nullptr) return ObjectiveFunction::step_length(step);
+  const Eigen::Map<const ControlPoints<Dim>> phi(step.data(), Dim, pattern_->size());
+  return image_->largest_step(phi);
+}
+
+template class RegistrationObjective<2>;
+template class RegistrationObjective<3>;
+
+}  // namespace crease

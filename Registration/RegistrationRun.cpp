@@ -1,0 +1,396 @@
+#include "Registration/RegistrationRun.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "Core/Error.h"
+#include "Images/IntensityRange.h"
+#include "Metrics/TargetDisplacement.h"
+#include "Optimizers/GaussNewton.h"
+#include "Registration/OpticalFlow.h"
+#include "Registration/SamplesInside.h"
+#include "Transforms/Energies/DirichletEnergy.h"
+#include "Transforms/Energies/LandmarkEnergy.h"
+
+namespace crease {
+namespace {
+
+constexpr int kLargestFlowImage = 1200;  // pixels: larger images give their flow at half the size
+
+/// Samples that lie in the domain of the bound grid keep their weight.
+template <int Dim>
+std::vector<float> weights_in_domain(const BoundGrid<Dim>& grid, std::vector<float> weights) {
+  const auto width = static_cast<std::size_t>(grid.raster().size[0]);
+  std::vector<std::uint8_t> inside(width);
+  for (std::int64_t r = 0; r < grid.raster().num_rows(); ++r) {
+    grid.coverage(r, inside);
+    float* row = weights.data() + static_cast<std::size_t>(r) * width;
+    for (std::size_t i = 0; i < width; ++i) row[i] *= static_cast<float>(inside[i]);
+  }
+  return weights;
+}
+
+template <int Dim>
+Image<float, Dim> scaled(const Image<float, Dim>& image, double factor) {
+  Image<float, Dim> result = image;
+  for (float& v : result.values()) v *= static_cast<float>(factor);
+  return result;
+}
+
+/// For costs that are quadratic, or nearly so: the block curvature of an image term is not exact.
+GaussNewton quadratic_solver(double relative_decrease) {
+  OptimizerOptions stopping;
+  stopping.relative_decrease = relative_decrease;
+  stopping.small_decreases = 1;
+  stopping.max_iterations = 4;
+  GaussNewtonOptions options;
+  options.linear_solver.kind = LinearSolver::kScalarPreconditionedCg;
+  options.linear_solver.cg_tolerance = 1e-6;
+  options.initial_damping = 1e-9;
+  return GaussNewton(stopping, options);
+}
+
+}  // namespace
+
+template <int Dim>
+RegistrationRun<Dim>::RegistrationRun(const RegistrationParts<Dim>& parts,
+                                      const RegistrationCallback& progress)
+    : parts_(parts), progress_(progress) {
+  check_parts();
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::check_parts() const {
+  if (parts_.basis == nullptr) throw InvalidInput("registration: no spline basis given");
+  double sum = parts_.has_images() ? parts_.image_weight : 0;
+  for (const auto& energy : parts_.energies) sum += energy.weight;
+  if (!(sum > 0)) {
+    throw InvalidInput("registration: all weights are zero; give alpha, beta or gamma a weight");
+  }
+}
+
+template <int Dim>
+RegistrationResult<Dim> RegistrationRun<Dim>::execute() {
+  if (parts_.has_images()) normalise_images();
+  find_initial_map();
+  add_time("alignment");
+  make_constraints();
+  collect_energies();
+  make_levels();
+  add_time("binding");
+  optimise();
+  return std::move(result_);
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::normalise_images() {
+  const IntensityRange range = intensity_percentiles(*parts_.fixed, parts_.fixed_mask_pointer());
+  const IntensityRange all = intensity_range(*parts_.fixed, parts_.fixed_mask_pointer());
+  const double width = range.constant() ? all.width() : range.width();
+  if (!(width > 0)) {
+    throw InvalidInput(message("registration: the fixed image is constant (", all.lower,
+                               ") inside the mask; there is nothing to register"));
+  }
+  fixed_ = scaled(*parts_.fixed, 1 / width);
+  moving_ = scaled(*parts_.moving, 1 / width);
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::find_initial_map() {
+  if (parts_.initial) {
+    affine_ = *parts_.initial;
+  } else if (parts_.has_images()) {
+    tell("alignment", 0, 0, 0);
+    const Alignment<Dim> found =
+        align(fixed_, moving_, parts_.fixed_mask_pointer(), parts_.moving_mask_pointer(),
+              parts_.landmarks, parts_.alignment, progress_);
+    affine_ = found.map;
+    result_.alignment = found.report;
+    if (!found.report.improved) {
+      result_.warnings.push_back(
+          "the initial alignment found no better map than its start, which was kept");
+    }
+  }
+  result_.initial = affine_;
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::make_constraints() {
+  auto constraints = make_landmark_constraints(parts_.landmarks, *parts_.basis, affine_,
+                                               parts_.landmark_options, parts_.null_space);
+  null_space_ = constraints.null_space;
+  for (const auto& note : constraints.notes) result_.warnings.push_back(note);
+  result_.free_parameters = null_space_->reduced_size();
+  pattern_ = std::make_shared<HessianPattern>(parts_.basis->num_control_points(),
+                                              parts_.basis->couplings());
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::collect_energies() {
+  for (const auto& [name, weight, factory] : parts_.energies) {
+    energies_.push_back({name, weight, factory(*parts_.basis, affine_)});
+  }
+  const Landmarks<Dim>& all = parts_.landmarks;
+  const auto exact = exact_landmarks(all, parts_.landmark_options.mode);
+  std::vector<Point<Dim>> fixed, moving;
+  std::vector<double> sigma_mm;
+  for (std::size_t j = 0; j < all.fixed.size(); ++j) {
+    if (std::binary_search(exact.begin(), exact.end(), static_cast<int>(j))) continue;
+    const bool own = j < all.sigma_mm.size() && std::isfinite(all.sigma_mm[j]);
+    fixed.push_back(all.fixed[j]);
+    moving.push_back(all.moving[j]);
+    sigma_mm.push_back(own ? all.sigma_mm[j] : parts_.landmark_options.sigma_mm);
+  }
+  if (fixed.empty()) return;
+  energies_.push_back(
+      {"landmarks", parts_.landmark_options.weight,
+       std::make_shared<LandmarkEnergy<Dim>>(*parts_.basis, affine_, fixed, moving, sigma_mm)});
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::make_levels() {
+  if (!parts_.has_images()) {
+    levels_.resize(1);
+    return;
+  }
+  tell("binding", 0, 0, 0);
+  images_ = image_levels(
+      fixed_, moving_, parts_.fixed_mask_pointer(), parts_.moving_mask_pointer(),
+      parts_.schedule.levels,
+      {.interpolation = parts_.interpolation, .smooth_finest = parts_.schedule.smooth_finest});
+  double factor = 1;
+  for (auto image = images_.rbegin(); image != images_.rend(); ++image) {
+    Level level;
+    level.shrink = image->shrink;
+    level.bending_factor = factor;
+    level.grid = parts_.basis->bind(image->fixed.raster());
+    image->weights = weights_in_domain(*level.grid, std::move(image->weights));
+    levels_.push_back(std::move(level));
+    factor *= parts_.schedule.level_bending;
+  }
+  std::reverse(levels_.begin(), levels_.end());
+}
+
+/// Samples that the start maps outside the moving image have nothing to be compared with: they do not
+/// count at this level. The choice is kept for the whole level, so that the number of samples never
+/// jumps while the level is optimised.
+template <int Dim>
+void RegistrationRun<Dim>::choose_samples(std::size_t l, const Phi& start) {
+  if (!parts_.has_images()) return;
+  Level& level = levels_[l];
+  ImageLevel<Dim>& image = images_[l];
+  std::vector<float> weights = image.weights;
+  keep_samples_inside<Dim>(*level.grid, affine_, start.reshaped(Dim, pattern_->size()),
+                           image.moving->raster(), weights);
+  double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double all = std::accumulate(image.weights.begin(), image.weights.end(), 0.0);
+  if (4 * sum < all) {  // a start that is far off: the metric says what is wrong if it stays so
+    weights = image.weights;
+    sum = all;
+  }
+  level.noise_floor = 1e-11 * parts_.image_weight * sum * image.fixed.raster().sample_volume();
+  level.image = std::make_shared<ImageTerm<Dim>>(
+      level.grid, parts_.metric({image.fixed, std::move(weights), image.moving, image.moving_mask}),
+      affine_);
+}
+
+template <int Dim>
+std::unique_ptr<RegistrationObjective<Dim>> RegistrationRun<Dim>::objective(
+    const Level& level) const {
+  auto energies = energies_;
+  for (auto& energy : energies) {
+    if (energy.name == "bending") energy.weight *= level.bending_factor;
+  }
+  return std::make_unique<RegistrationObjective<Dim>>(pattern_, level.image, parts_.image_weight,
+                                                      std::move(energies));
+}
+
+/// Bending times the weight, with a little stretching that makes the minimum unique where nothing bends
+/// (inside bodies, and for maps that are affine).
+template <int Dim>
+std::vector<WeightedEnergy<Dim>> RegistrationRun<Dim>::smoothing(double weight) {
+  const double h = parts_.basis->mean_edge_length();
+  if (stretching_ == nullptr) {
+    stretching_ = std::make_shared<DirichletEnergy<Dim>>(*parts_.basis, 1);
+  }
+  std::vector<WeightedEnergy<Dim>> energies = {
+      {"stretching", 1e-3 * weight / (h * h), stretching_}};
+  for (const auto& energy : energies_) {
+    if (energy.name == "bending") energies.push_back({energy.name, weight, energy.energy});
+  }
+  return energies;
+}
+
+/// The smoothest displacement that meets the landmarks. Source: registration in the null space, the start
+/// after elimination.
+template <int Dim>
+typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::smoothest_start() {
+  RegistrationObjective<Dim> quadratic(pattern_, nullptr, 0, smoothing(1));
+  return quadratic_solver(1e-9)
+      .minimize(quadratic, Phi::Zero(null_space_->full_size()), null_space_.get())
+      .x;
+}
+
+/// Weighted least squares to a dense optical flow, with bending, within the constraints.
+template <int Dim>
+typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Phi& near) {
+  if constexpr (Dim == 2) {
+    std::size_t l = images_.size() - 1;
+    while (l > 0 &&
+           std::max(images_[l].fixed.size()[0], images_[l].fixed.size()[1]) > kLargestFlowImage) {
+      --l;
+    }
+    const FlowField flow =
+        optical_flow(images_[l].fixed, images_[l].weights, *images_[l].moving, affine_);
+    auto target =
+        std::make_shared<TargetDisplacement<2>>(flow.raster, flow.displacement, flow.weights);
+    auto fit = std::make_shared<ImageTerm<2>>(levels_[l].grid, target, affine_);
+    const double pixel = fixed_.raster().spacing.minCoeff();
+    RegistrationObjective<2> quadratic(pattern_, fit, 1, smoothing(10 * std::pow(pixel, 4)));
+    const GaussNewton solver = quadratic_solver(1e-2);
+    return solver.minimize(quadratic, near, null_space_.get()).x;
+  }
+  return near;
+}
+
+template <int Dim>
+std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
+  std::vector<Phi> candidates;
+  candidates.push_back(null_space_->rank() > 0 ? smoothest_start()
+                                               : Phi::Zero(null_space_->full_size()));
+  if (Dim == 2 && parts_.schedule.optical_flow && !images_.empty()) {
+    candidates.push_back(fitted_to_flow(candidates.front()));
+  }
+  return candidates;
+}
+
+template <int Dim>
+std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t level) const {
+  if (parts_.optimizer != nullptr) return parts_.optimizer;
+  OptimizerOptions stopping;
+  stopping.max_iterations = 100;
+  if (parts_.has_images()) {
+    const bool finest = level + 1 == levels_.size();
+    stopping.relative_decrease = 1e-3;
+    stopping.small_decreases = 1;
+    stopping.step_length = finest ? 0.02 : 0.1;
+  }
+  return std::make_shared<GaussNewton>(stopping);
+}
+
+template <int Dim>
+OptimizerResult RegistrationRun<Dim>::optimise_level(std::size_t level, const Phi& start) {
+  const auto cost = objective(levels_[level]);
+  const double value = cost->evaluate(start, nullptr, nullptr);
+  if (value <= levels_[level].noise_floor) {
+    OptimizerResult rest;
+    rest.x = start;
+    rest.value = rest.initial_value = value;
+    rest.reason = StopReason::kNoDecrease;
+    rest.reason_text = "the images already match to rounding";
+    return rest;
+  }
+  const auto optimizer = optimizer_of(level);
+  return optimizer->minimize(*cost, start, null_space_.get(), [&](const IterationRecord& record) {
+    tell("level", level, record.iteration, record.value);
+    return !cancelled_;
+  });
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::optimise() {
+  tell("start", 0, 0, 0);
+  std::vector<Phi> candidates = starts();
+  add_time("start");
+  Phi phi;
+  for (std::size_t l = 0; l < levels_.size() && !cancelled_; ++l) {
+    LevelReport level;
+    level.shrink = levels_[l].shrink;
+    // A start that throws samples out of the moving image must not profit from it: A alone decides first.
+    choose_samples(l, l == 0 ? Phi(Phi::Zero(null_space_->full_size())) : candidates.front());
+    const auto cost = objective(levels_[l]);
+    OptimizerResult best;
+    best.value = std::numeric_limits<double>::infinity();
+    for (const Phi& start : candidates) {
+      OptimizerResult found = optimise_level(l, start);
+      if (found.value < best.value) best = std::move(found);
+    }
+    cost->evaluate(candidates.front(), nullptr, nullptr);
+    level.terms_before = cost->terms();
+    cost->evaluate(best.x, nullptr, nullptr);
+    level.terms_after = cost->terms();
+    level.iterations = best.iterations;
+    level.evaluations = best.num_evaluations;
+    level.factorizations = best.num_factorizations;
+    level.stopped_because = best.reason_text;
+    for (const auto& record : best.history) level.energy_history.push_back(record.value);
+    result_.converged =
+        best.reason != StopReason::kTimeLimit && best.reason != StopReason::kCancelled;
+    if (best.reason == StopReason::kIterationLimit) {
+      result_.warnings.push_back(message("level ", l + 1, " of ", levels_.size(),
+                                         " stopped at the iteration limit (", best.iterations,
+                                         "); the result may still improve"));
+    }
+    result_.stopped_because = best.reason_text;
+    result_.levels.push_back(std::move(level));
+    phi = std::move(best.x);
+    candidates = {phi};
+  }
+  add_time("optimization");
+  report(phi.size() > 0 ? phi : candidates.front());
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::report(const Phi& phi) {
+  auto transform = std::make_shared<SplineTransform<Dim>>(parts_.basis, affine_);
+  transform->set_parameters(phi);
+  if (!result_.levels.empty()) result_.energies = result_.levels.back().terms_after;
+  if (parts_.has_images()) {
+    const ControlPoints<Dim> none = ControlPoints<Dim>::Zero(Dim, pattern_->size());
+    ImageTerm<Dim>& image = *levels_.back().image;
+    result_.metric_before = image.evaluate(none, 1, nullptr, nullptr);
+    result_.metric_after = image.evaluate(phi.reshaped(Dim, pattern_->size()), 1, nullptr, nullptr);
+    result_.improved = result_.metric_after < result_.metric_before;
+    if (!result_.improved) {
+      result_.warnings.push_back("the registration did not improve the match of the images");
+    }
+  }
+  for (std::size_t j = 0; j < parts_.landmarks.fixed.size(); ++j) {
+    result_.landmark_errors_mm.push_back(
+        (transform->map(parts_.landmarks.fixed[j]) - parts_.landmarks.moving[j]).norm());
+  }
+  result_.transform = std::move(transform);
+  add_time("report");
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::tell(const std::string& stage, std::size_t level, int iteration,
+                                double energy) {
+  if (!progress_) return;
+  const double levels = std::max<double>(1, static_cast<double>(levels_.size()));
+  RegistrationProgress state{.stage = stage,
+                             .level = static_cast<int>(level) + 1,
+                             .num_levels = static_cast<int>(levels_.size()),
+                             .iteration = iteration,
+                             .energy = energy};
+  // A level counts by its pixels, iterations within it towards a usual number of ten.
+  if (stage == "level") {
+    const double share = std::pow(0.25, levels - 1 - static_cast<double>(level)) * 0.7;
+    state.fraction = 0.2 + share * (0.25 + 0.75 * std::min(1.0, iteration / 10.0));
+  }
+  if (!progress_(state)) cancelled_ = true;
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::add_time(const std::string& stage) {
+  const auto now = std::chrono::steady_clock::now();
+  result_.timings_s[stage] += std::chrono::duration<double>(now - last_time_).count();
+  last_time_ = now;
+}
+
+template class RegistrationRun<2>;
+template class RegistrationRun<3>;
+
+}  // namespace crease

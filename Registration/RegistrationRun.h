@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "Registration/ImageLevels.h"
+#include "Registration/RegistrationParts.h"
+
+namespace crease {
+
+/// One run of a registration, stage by stage: align, constrain, bind, start, optimise level by level,
+/// report.
+template <int Dim>
+class RegistrationRun {
+ public:
+  RegistrationRun(const RegistrationParts<Dim>& parts, const RegistrationCallback& progress);
+  RegistrationResult<Dim> execute();
+
+ private:
+  using Phi = Eigen::VectorXd;  // stacked control points
+  struct Level {
+    int shrink = 1;
+    std::shared_ptr<const BoundGrid<Dim>> grid;
+    std::shared_ptr<ImageTerm<Dim>> image;  // null without images
+    double bending_factor = 1;
+    double noise_floor = 0;  // values of the cost that are rounding alone
+  };
+
+  void check_parts() const;
+  void normalise_images();
+  void find_initial_map();
+  void make_constraints();
+  void make_levels();
+  void choose_samples(std::size_t level, const Phi& start);
+  void collect_energies();
+  std::vector<Phi> starts();
+  std::vector<WeightedEnergy<Dim>> smoothing(double weight);
+  Phi smoothest_start();
+  Phi fitted_to_flow(const Phi& near);
+  void optimise();
+  OptimizerResult optimise_level(std::size_t level, const Phi& start);
+  void report(const Phi& phi);
+
+  std::unique_ptr<RegistrationObjective<Dim>> objective(const Level& level) const;
+  std::shared_ptr<const Optimizer> optimizer_of(std::size_t level) const;
+  void tell(const std::string& stage, std::size_t level, int iteration, double energy);
+  void add_time(const std::string& stage);
+
+  const RegistrationParts<Dim>& parts_;
+  const RegistrationCallback& progress_;
+  bool cancelled_ = false;
+  std::chrono::steady_clock::time_point last_time_ = std::chrono::steady_clock::now();
+
+  Image<float, Dim> fixed_, moving_;  // normalised
+  AffineMap<Dim> affine_;
+  std::shared_ptr<const NullSpace> null_space_;
+  std::shared_ptr<const HessianPattern> pattern_;
+  std::vector<WeightedEnergy<Dim>> energies_;
+  std::shared_ptr<const Energy<Dim>> stretching_;  // made when needed
+  std::vector<ImageLevel<Dim>> images_;
+  std::vector<Level> levels_;
+  RegistrationResult<Dim> result_;
+};
+
+extern template class RegistrationRun<2>;
+extern template class RegistrationRun<3>;
+
+}  // namespace crease

@@ -1,0 +1,114 @@
+#include "Registration/LandmarkConstraints.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "Core/Error.h"
+#include "Testing/Registration/TestScenes.h"
+#include "Transforms/SplineTransform.h"
+#include "Transforms/Splines/TensorBSplineBasis.h"
+
+namespace crease {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+const auto kBasis =
+    std::make_shared<TensorBSplineBasis<2>>(covering_lattice(testing::raster_of<2>(100), 20.0));
+
+Landmarks<2> some_landmarks() {
+  Landmarks<2> landmarks;
+  landmarks.fixed = {{10, 10}, {80, 15}, {30, 77}, {55, 52}};
+  landmarks.moving = {{12, 9}, {83, 17}, {28, 80}, {51, 50}};
+  return landmarks;
+}
+
+double largest_error(const Landmarks<2>& landmarks, const NullSpace& null_space,
+                     const AffineMap<2>& affine) {
+  SplineTransform<2> transform(kBasis, affine);
+  transform.set_parameters(
+      null_space.expand(Eigen::VectorXd::LinSpaced(null_space.reduced_size(), -3, 5)));
+  double largest = 0;
+  for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
+    largest = std::max(largest, (transform.map(landmarks.fixed[j]) - landmarks.moving[j]).norm());
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST(LandmarkConstraints, EveryPointOfTheNullSpaceMeetsThem) {
+  AffineMap<2> affine;
+  affine.linear << 1.05, 0.1, -0.08, 0.98;
+  affine.offset << 3, -2;
+  for (auto kind : {NullSpaceKind::kElimination, NullSpaceKind::kQr, NullSpaceKind::kSvd}) {
+    const auto constraints =
+        make_landmark_constraints<2>(some_landmarks(), *kBasis, affine, {}, kind);
+    EXPECT_EQ(constraints.null_space->rank(), 4);
+    EXPECT_LT(largest_error(some_landmarks(), *constraints.null_space, affine), 1e-9 * 141);
+  }
+}
+
+TEST(LandmarkConstraints, SoftLandmarksAreNoConstraints) {
+  auto landmarks = some_landmarks();
+  landmarks.sigma_mm = {NAN, 2.0, NAN, 0.5};
+  EXPECT_THAT(exact_landmarks(landmarks, LandmarkMode::kExact), ::testing::ElementsAre(0, 2));
+  EXPECT_THAT(exact_landmarks(landmarks, LandmarkMode::kSoft), ::testing::IsEmpty());
+}
+
+TEST(LandmarkConstraints, RepeatedLandmarkIsDroppedWithANote) {
+  auto landmarks = some_landmarks();
+  landmarks.fixed.push_back(landmarks.fixed[1]);
+  landmarks.moving.push_back(landmarks.moving[1]);
+  const auto constraints =
+      make_landmark_constraints<2>(landmarks, *kBasis, {}, {}, NullSpaceKind::kElimination);
+  EXPECT_EQ(constraints.null_space->rank(), 4);
+  ASSERT_EQ(constraints.notes.size(), 1u);
+  EXPECT_THAT(constraints.notes[0], HasSubstr("follows from"));
+}
+
+TEST(LandmarkConstraints, OnePointCannotGoToTwoPlaces) {
+  auto landmarks = some_landmarks();
+  landmarks.fixed.push_back(landmarks.fixed[1]);
+  landmarks.moving.push_back(landmarks.moving[2]);
+  EXPECT_THAT(
+      [&] {
+        make_landmark_constraints<2>(landmarks, *kBasis, {}, {}, NullSpaceKind::kElimination);
+      },
+      ThrowsMessage<InvalidInput>(AllOf(HasSubstr("landmarks 2 and 5"), HasSubstr("mm apart"))));
+}
+
+TEST(LandmarkConstraints, NamesTheDistanceOfALandmarkOutside) {
+  auto landmarks = some_landmarks();
+  landmarks.fixed[2] = {104.5, 50};
+  EXPECT_THAT(
+      [&] {
+        make_landmark_constraints<2>(landmarks, *kBasis, {}, {}, NullSpaceKind::kElimination);
+      },
+      ThrowsMessage<InvalidInput>(AllOf(HasSubstr("landmark 3"), HasSubstr("5 mm outside"))));
+}
+
+// A cubic span has 16 control points: 20 landmarks in it leave at least 4 that cannot be met.
+TEST(LandmarkConstraints, ContradictionsAreRefusedOrCompromised) {
+  Landmarks<2> landmarks;
+  for (int j = 0; j < 20; ++j) {
+    const Point<2> p(41 + 3.1 * (j % 5), 42 + 4.3 * (j / 5));
+    landmarks.fixed.push_back(p);
+    landmarks.moving.push_back(p + Vector<2>(std::sin(5.0 * j), std::cos(7.0 * j)));
+  }
+  EXPECT_THAT(
+      [&] {
+        make_landmark_constraints<2>(landmarks, *kBasis, {}, {}, NullSpaceKind::kElimination);
+      },
+      ThrowsMessage<InvalidInput>(AllOf(HasSubstr("contradict"), HasSubstr("sigma"))));
+  const auto compromise = make_landmark_constraints<2>(landmarks, *kBasis, {},
+                                                       {.conflict = LandmarkConflict::kCompromise},
+                                                       NullSpaceKind::kElimination);
+  ASSERT_EQ(compromise.notes.size(), 1u);
+  EXPECT_THAT(compromise.notes[0], HasSubstr("least-squares"));
+  EXPECT_LT(largest_error(landmarks, *compromise.null_space, {}), 2.0);
+}
+
+}  // namespace crease

@@ -1,0 +1,268 @@
+#include "Applications/Info.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "Applications/InputFiles.h"
+#include "Applications/RunOptions.h"
+#include "Applications/RunReport.h"
+#include "Applications/TransformInput.h"
+#include "Images/ImageFile.h"
+#include "Registration/Landmarks.h"
+#include "Transforms/CompositeTransform.h"
+#include "Transforms/Domains/FeatureLineFile.h"
+#include "Transforms/Domains/RegionOfInterest.h"
+#include "Transforms/SplineTransform.h"
+#include "Transforms/Splines/TensorBSplineBasis.h"
+#include "Transforms/Splines/TriangularBSplineBasis.h"
+#include "Transforms/TransformFile.h"
+
+namespace crease {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What is known about a file, for people and for programs.
+struct FileInfo {
+  Json figures;
+  std::string text;
+};
+
+std::string numbers_text(const double* values, int count, const char* separator) {
+  std::string text;
+  for (int a = 0; a < count; ++a)
+    text += fmt::format("{}{:.6g}", a > 0 ? separator : "", values[a]);
+  return text;
+}
+
+FileInfo image_info(const std::string& file) {
+  const ImageInfo info = read_image_info(file);
+  const ImageHeader& h = info.header;
+  const auto n = static_cast<std::size_t>(h.dimension);
+  const auto list = [&](const double* values) { return std::vector<double>(values, values + n); };
+  Json direction = Json::array();
+  for (int a = 0; a < h.dimension; ++a) direction.push_back(list(h.direction.col(a).data()));
+  FileInfo result;
+  result.figures = {{"kind", "image"},
+                    {"format", to_string(h.format)},
+                    {"dimension", h.dimension},
+                    {"size", std::vector<int>(h.size.begin(), h.size.begin() + h.dimension)},
+                    {"spacing_mm", list(h.spacing.data())},
+                    {"origin_mm", list(h.origin.data())},
+                    {"axes", direction},
+                    {"type", to_string(h.pixel_type)},
+                    {"components", h.num_components},
+                    {"min", info.minimum},
+                    {"max", info.maximum},
+                    {"not_finite", info.num_not_finite},
+                    {"notes", h.notes}};
+  std::string size;
+  for (int a = 0; a < h.dimension; ++a) size += fmt::format("{}{}", a > 0 ? " x " : "", h.size[a]);
+  result.text = fmt::format("{} image, {}D, {} pixels, {}, {} value{} per pixel\n",
+                            to_string(h.format), h.dimension, size, to_string(h.pixel_type),
+                            h.num_components, h.num_components == 1 ? "" : "s");
+  result.text += fmt::format("spacing {} mm, first pixel at ({}) mm\n",
+                             numbers_text(h.spacing.data(), h.dimension, " x "),
+                             numbers_text(h.origin.data(), h.dimension, ", "));
+  if (!h.direction.isIdentity(1e-6)) {
+    for (int a = 0; a < h.dimension; ++a) {
+      result.text += fmt::format("axis {} runs along ({})\n", a + 1,
+                                 numbers_text(h.direction.col(a).data(), h.dimension, ", "));
+    }
+  }
+  result.text += fmt::format("values {:.6g} to {:.6g}, {} not finite\n", info.minimum, info.maximum,
+                             info.num_not_finite);
+  for (const std::string& note : h.notes) result.text += note + "\n";
+  return result;
+}
+
+template <int Dim>
+void describe_basis(const SplineBasis<Dim>& basis, Json& json, std::string& text) {
+  json["degree"] = basis.degree();
+  json["smoothness"] = basis.smoothness();
+  json["control_points"] = basis.num_control_points();
+  json["mean_edge_length_mm"] = basis.mean_edge_length();
+  text += fmt::format(
+      "  degree {}, C{} away from creases, {} control points, mean edge {:.4g} mm\n",
+      basis.degree(), basis.smoothness(), basis.num_control_points(), basis.mean_edge_length());
+  if (const auto* tensor = dynamic_cast<const TensorBSplineBasis<Dim>*>(&basis)) {
+    const auto& spans = tensor->lattice().spans;
+    json["basis"] = "tensor";
+    json["spans"] = std::vector<int>(spans.begin(), spans.end());
+    text += fmt::format("  tensor-product B-spline, {} spans\n", fmt::join(spans, " x "));
+  }
+  if (const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis)) {
+    const auto& net = triangular->net();
+    json["basis"] = "triangular";
+    json["simplices"] = net.mesh.simplices.size();
+    json["vertices"] = net.mesh.vertices.size();
+    json["crease_edges"] = net.crease_edges.size();
+    const int bodies = net.mesh.regions.empty()
+                           ? 0
+                           : *std::max_element(net.mesh.regions.begin(), net.mesh.regions.end());
+    json["bodies"] = bodies;
+    text += fmt::format(
+        "  triangular B-spline, {} triangles, {} vertices, {} crease edges, {} rigid "
+        "bodies\n",
+        net.mesh.simplices.size(), net.mesh.vertices.size(), net.crease_edges.size(), bodies);
+  }
+}
+
+template <int Dim>
+void describe_transform(const Transform<Dim>& transform, Json& json, std::string& text) {
+  json["parameters"] = transform.num_parameters();
+  if (const auto* spline = dynamic_cast<const SplineTransform<Dim>*>(&transform)) {
+    describe_basis(spline->basis(), json, text);
+  }
+  if (const auto* chain = dynamic_cast<const CompositeTransform<Dim>*>(&transform)) {
+    json["parts"] = Json::array();
+    for (std::size_t k = 0; k < chain->num_parts(); ++k) {
+      Json part = Json::object();
+      text += fmt::format("part {}\n", k + 1);
+      describe_transform(chain->part(k), part, text);
+      json["parts"].push_back(part);
+    }
+  }
+}
+
+FileInfo transform_info(const std::string& file) {
+  const TransformFileInfo info = peek_transform(file);
+  FileInfo result;
+  result.figures = {{"kind", "transform"},
+                    {"type", info.type},
+                    {"in_dimension", info.in_dim},
+                    {"out_dimension", info.out_dim}};
+  result.text = fmt::format("{} transform, {}D to {}D\n", info.type, info.in_dim, info.out_dim);
+  if (info.in_dim != info.out_dim) return result;
+  if (info.in_dim == 2) {
+    describe_transform(*load_transform<2>(file), result.figures, result.text);
+  } else {
+    describe_transform(*load_transform<3>(file), result.figures, result.text);
+  }
+  return result;
+}
+
+template <int Dim>
+FileInfo landmark_info(const std::string& file) {
+  const Landmarks<Dim> landmarks = read_landmarks<Dim>(file);
+  double sum = 0, largest = 0;
+  for (int j = 0; j < landmarks.size(); ++j) {
+    const double distance = (landmarks.moving[j] - landmarks.fixed[j]).norm();
+    sum += distance;
+    largest = std::max(largest, distance);
+  }
+  const double mean = landmarks.empty() ? 0 : sum / landmarks.size();
+  FileInfo result;
+  result.figures = {{"kind", "landmarks"},
+                    {"dimension", Dim},
+                    {"count", landmarks.size()},
+                    {"has_sigma", !landmarks.sigma_mm.empty()},
+                    {"has_angles", !landmarks.fixed_angle.empty()},
+                    {"distance_mm", {{"mean", mean}, {"max", largest}}}};
+  result.text =
+      fmt::format("{} landmark pairs, {}D{}{}\nfixed to moving: mean {:.4g}, largest {:.4g} mm\n",
+                  landmarks.size(), Dim, landmarks.sigma_mm.empty() ? "" : ", with uncertainties",
+                  landmarks.fixed_angle.empty() ? "" : ", with directions", mean, largest);
+  return result;
+}
+
+FileInfo feature_line_info(const std::string& file) {
+  const auto lines = read_feature_lines(file);
+  FileInfo result;
+  result.figures = {{"kind", "feature lines"}, {"count", lines.size()}, {"lines", Json::array()}};
+  result.text = fmt::format("{} feature lines\n", lines.size());
+  for (const FeatureLine& line : lines) {
+    const double length = polyline_length(line.points, line.closed);
+    const std::string body = to_string(body_side(line));
+    result.figures["lines"].push_back({{"name", line.name},
+                                       {"points", line.points.size()},
+                                       {"closed", line.closed},
+                                       {"kind", to_string(line.kind)},
+                                       {"body", body},
+                                       {"length_mm", length}});
+    result.text += fmt::format("  {}: {} {}, {} points, {:.4g} mm, body {}\n", line.name,
+                               line.closed ? "closed" : "open", to_string(line.kind),
+                               line.points.size(), length, body);
+  }
+  return result;
+}
+
+FileInfo region_info(const std::string& file) {
+  const RegionOfInterest region = read_region_of_interest(file);
+  const Box<2> box = region.bounds();
+  FileInfo result;
+  result.figures = {{"kind", "region of interest"},
+                    {"rings", region.rings().size()},
+                    {"area_mm2", region.area()},
+                    {"lower_mm", {box.lower.x(), box.lower.y()}},
+                    {"upper_mm", {box.upper.x(), box.upper.y()}}};
+  result.text =
+      fmt::format("region of interest: {} rings, {:.6g} mm^2, ({}) to ({}) mm\n",
+                  region.rings().size(), region.area(), numbers_text(box.lower.data(), 2, ", "),
+                  numbers_text(box.upper.data(), 2, ", "));
+  return result;
+}
+
+FileInfo table_info(const std::string& file) {
+  if (has_csv_column(file, "fixed_z")) return landmark_info<3>(file);
+  if (has_csv_column(file, "fixed_x")) return landmark_info<2>(file);
+  if (has_csv_column(file, "line")) return feature_line_info(file);
+  if (has_csv_column(file, "ring")) return region_info(file);
+  throw InvalidInput(message(file,
+                             ": the table has neither landmarks (fixed_x,fixed_y,...), nor feature "
+                             "lines (line,x,y), nor a region of interest (ring,x,y)."));
+}
+
+FileInfo file_info(const std::string& file) {
+  if (!std::filesystem::exists(file)) throw FileError(message(file, ": there is no such file."));
+  if (has_ending(file, ".csv")) return table_info(file);
+  if (has_ending(file, ".mrk.json")) return feature_line_info(file);
+  if (is_transform_file(file)) return transform_info(file);
+  return image_info(file);
+}
+
+struct InfoCommand {
+  RunOptions run;
+  std::string file;
+};
+
+ExitCode run(const InfoCommand& command) {
+  RunReport report("info", prepare_process(command.run));
+  const FileInfo info = file_info(command.file);
+  report.add_input("file", command.file);
+  report.end_stage("reading");
+  std::cout << (command.run.json ? report.to_json("ok", info.figures) : info.text);
+  return ExitCode::kSuccess;
+}
+
+constexpr const char* kDetails =
+    R"(Understands images, transforms, landmarks, feature lines and regions of interest.
+
+Example:
+  crease info thorax.nii.gz)";
+
+}  // namespace
+
+Subcommand info_subcommand() {
+  const auto command = std::make_shared<InfoCommand>();
+  std::vector<Option> options = {{.name = "file",
+                                  .target = &command->file,
+                                  .placeholder = "FILE",
+                                  .help = "File to describe",
+                                  .required = true,
+                                  .is_path = true,
+                                  .positional = true}};
+  const auto run_options = options_of(command->run);
+  options.insert(options.end(), run_options.begin(), run_options.end());
+  return {.name = "info",
+          .summary = "Say what a file holds",
+          .details = kDetails,
+          .options = options,
+          .run = [command](const std::string&) { return run(*command); }};
+}
+
+}  // namespace crease

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+/// Lets `write` make a file under a temporary name beside it, with the same extension, and renames it:
+/// a file under its own name is always complete.
+void write_file(const std::filesystem::path& file,
+                const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// The same for a text.
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+/// The folder of one run's results. A folder with result.json is complete: opening it removes a
+/// result.json and temporary files that an earlier run left, and finish() writes the new one last.
+class OutputFolder {
+ public:
+  /// Makes the folder where it is missing.
+  /// @param inputs  files that this run reads: they are never overwritten.
+  /// @throws UsageError when the folder cannot be made.
+  explicit OutputFolder(std::filesystem::path folder, std::vector<std::string> inputs = {});
+
+  std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+  /// @throws UsageError when the file is an input. @throws FileError when it cannot be written.
+  void write(const std::string& name,
+             const std::function<void(const std::filesystem::path& temporary)>& write) const;
+  void write_text(const std::string& name, const std::string& text) const;
+  void finish(const std::string& result_json) const { write_text("result.json", result_json); }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::string> inputs_;
+};
+
+}  // namespace crease

@@ -1,0 +1,200 @@
+#include "Applications/Register.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "Applications/EvaluationReport.h"
+#include "Applications/RegisterInput.h"
+#include "Applications/RegisterOptions.h"
+#include "Applications/RegisterOutput.h"
+#include "Applications/RegisterRun.h"
+
+namespace crease {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kDetails =
+    R"(Writes into DIR: warped.* (the moving image on the fixed grid), displacement.mha (T(x) - x in mm),
+jacobian.mha, transform.json (for crease warp), pictures/*.png, config.toml and, last, result.json.
+Physical coordinates in mm (LPS) everywhere; T maps points of the fixed image to the moving image.
+
+Example: two X-rays with rigid bones and some landmarks
+  crease register --fixed monday.png --moving friday.png --spacing 0.2,0.2 --rigid-labels bones.png \
+      --landmarks pairs.csv --init-transform rigid --output registered)";
+
+struct LandmarkErrors {
+  double largest = 0;
+  double rms = 0;
+};
+
+template <int Dim>
+LandmarkErrors landmark_errors(const Landmarks<Dim>& landmarks, const Transform<Dim>& transform) {
+  LandmarkErrors errors;
+  for (int j = 0; j < landmarks.size(); ++j) {
+    const double error = (transform.map(landmarks.fixed[j]) - landmarks.moving[j]).norm();
+    errors.largest = std::max(errors.largest, error);
+    errors.rms += error * error / landmarks.size();
+  }
+  errors.rms = std::sqrt(errors.rms);
+  return errors;
+}
+
+Json energies_json(const std::map<std::string, double>& energies) {
+  Json json = {{"image", 0.0}, {"rigidity", 0.0}, {"bending", 0.0}};
+  for (const auto& [name, value] : energies) json[name] = value;
+  return json;
+}
+
+Json levels_json(const std::vector<LevelReport>& levels) {
+  Json json = Json::array();
+  for (const LevelReport& level : levels) json.push_back(level.iterations);
+  return json;
+}
+
+template <int Dim>
+Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                  const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation) {
+  const LandmarkErrors landmarks = landmark_errors(input.landmarks, *outcome.transform);
+  Json json;
+  json["metric"] = {
+      {"name", options.metric}, {"before", outcome.metric_before}, {"after", outcome.metric_after}};
+  if (evaluation.match) {
+    json["ssd_reduction_percent"] = evaluation.match->ssd_reduction_percent;
+    json["ncc"] = {{"before", evaluation.match->ncc_before},
+                   {"after", evaluation.match->ncc_after}};
+  } else {
+    json["ssd_reduction_percent"] = nullptr;
+    json["ncc"] = nullptr;
+  }
+  json["energies"] = energies_json(outcome.energies);
+  if (outcome.domain_measure > 0) {
+    json["energies_per_measure"] = json["energies"];
+    for (auto& value : json["energies_per_measure"]) {
+      value = value.template get<double>() / outcome.domain_measure;
+    }
+  }
+  json["weights"] = outcome.weights;
+  json["iterations"] = levels_json(outcome.levels);
+  json["stopped_because"] = outcome.stopped_because;
+  json["triangles"] = outcome.domain ? Json(outcome.domain->mesh.mesh.simplices.size()) : Json();
+  json["control_points"] = outcome.control_points;
+  json["free_parameters"] = outcome.free_parameters;
+  json["jacobian"] = to_json(evaluation.jacobian);
+  json["landmarks"] = {{"count", input.landmarks.size()},
+                       {"max_error_mm", landmarks.largest},
+                       {"rms_error_mm", landmarks.rms}};
+  json["bodies"] = Json::array();
+  for (const auto& body : evaluation.bodies) json["bodies"].push_back(to_json(body));
+  json["initial"] = {{"angle_deg", outcome.alignment.report.angle_deg},
+                     {"shift_mm", outcome.alignment.report.shift_mm}};
+  json["improved"] = outcome.improved;
+  return json;
+}
+
+template <int Dim>
+std::string summary_text(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                         const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation,
+                         double seconds) {
+  std::string text = options.transform;
+  if (outcome.domain) {
+    text += fmt::format(", {} triangles", outcome.domain->mesh.mesh.simplices.size());
+  }
+  if (outcome.control_points > 0)
+    text += fmt::format(", {} control points", outcome.control_points);
+  text += fmt::format(", {} free parameters, {:.2f} s\n", outcome.free_parameters, seconds);
+  if (options.has_metric()) {
+    text += fmt::format("{:<22} {:.5g} -> {:.5g}\n", options.metric, outcome.metric_before,
+                        outcome.metric_after);
+  }
+  text += summary(evaluation);
+  if (!input.landmarks.empty()) {
+    const LandmarkErrors errors = landmark_errors(input.landmarks, *outcome.transform);
+    text += fmt::format("{:<22} {} pairs, largest error {:.3g} mm, rms {:.3g} mm\n", "landmarks",
+                        input.landmarks.size(), errors.largest, errors.rms);
+  }
+  text += fmt::format("{:<22} {}, pictures in {}/pictures\n", "results", options.output,
+                      options.output);
+  return text;
+}
+
+/// What the user should know about the outcome.
+template <int Dim>
+void add_warnings(const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation,
+                  RunReport& report) {
+  if (evaluation.jacobian.folded > 0) {
+    report.add_warning(folding_text(evaluation.jacobian, evaluation.samples) + ".");
+  }
+  const bool told = !outcome.converged || outcome.control_points > 0;
+  if (!outcome.improved && !told) {
+    report.add_warning("the registration did not improve the match; the result is its start.");
+  }
+}
+
+std::vector<std::string> input_files(const RegisterOptions& o) {
+  std::vector<std::string> files = {o.fixed, o.moving};
+  for (const auto* file :
+       {&o.fixed_mask, &o.moving_mask, &o.roi, &o.rigid_labels, &o.feature_lines}) {
+    if (*file) files.push_back(**file);
+  }
+  if (o.init_is_file()) files.push_back(*o.init);
+  files.insert(files.end(), o.landmarks.begin(), o.landmarks.end());
+  return files;
+}
+
+template <int Dim>
+ExitCode register_images(const RegisterOptions& options, const std::string& config,
+                         RunReport& report, ProgressReporter& progress) {
+  progress.report({.stage = "reading"});
+  const RegisterInput<Dim> input = read_input<Dim>(options, report);
+  const OutputFolder output(options.output, input_files(options));
+  report.end_stage("reading");
+  const RegisterOutcome<Dim> outcome = run_registration(options, input, report, progress);
+  progress.report({.stage = "results", .fraction = 0.9});
+  const RegisterImages<Dim> images = make_images(options, input, *outcome.transform);
+  const Evaluation<Dim> evaluation = evaluate_outcome(options, input, outcome, images);
+  report.end_stage("results");
+  write_results(output, options, input, outcome, images);
+  write_pictures(output, input, outcome, images);
+  output.write_text("config.toml", config);
+  report.end_stage("writing");
+  add_warnings(outcome, evaluation, report);
+  for (const std::string& warning : report.warnings()) progress.warn(warning);
+
+  const bool gate_failed = options.require_invertible && evaluation.jacobian.folded > 0;
+  const char* status = !outcome.converged ? "not_converged" : (gate_failed ? "gate_failed" : "ok");
+  const std::string json =
+      report.to_json(status, figures_json(options, input, outcome, evaluation));
+  output.finish(json);
+  std::cout << (options.run.json
+                    ? json
+                    : summary_text(options, input, outcome, evaluation, report.elapsed_s()));
+  if (!outcome.converged) return ExitCode::kNotConverged;
+  return gate_failed ? ExitCode::kGateFailed : ExitCode::kSuccess;
+}
+
+ExitCode run(const RegisterOptions& options, const std::string& config) {
+  check(options);
+  RunReport report("register", prepare_process(options.run));
+  ProgressReporter progress(options.run, "register");
+  return dimension_of(options) == 2 ? register_images<2>(options, config, report, progress)
+                                    : register_images<3>(options, config, report, progress);
+}
+
+}  // namespace
+
+Subcommand register_subcommand() {
+  const auto options = std::make_shared<RegisterOptions>();
+  return {.name = "register",
+          .summary = "Register two images",
+          .details = kDetails,
+          .options = options_of(*options),
+          .exclusive = {{"mesh-size", "triangles"}},
+          .run = [options](const std::string& config) { return run(*options, config); }};
+}
+
+}  // namespace crease

@@ -1,0 +1,116 @@
+#include "Applications/RegisterInput.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "Applications/ExitCode.h"
+#include "Applications/TransformInput.h"
+#include "Transforms/AffineTransform.h"
+#include "Transforms/Domains/FeatureLineFile.h"
+#include "Transforms/RigidTransform.h"
+
+namespace crease {
+namespace {
+
+/// The affine map of --init FILE.
+template <int Dim>
+AffineMap<Dim> read_start(const std::string& file, RunReport& report) {
+  if (const int dimension = transform_dimension({file}); dimension != Dim) {
+    throw InvalidInput(
+        message("--init ", file, " is ", dimension, "D, but the images are ", Dim, "D."));
+  }
+  const auto transform = read_transforms<Dim>(report, {file});
+  if (const auto* affine = dynamic_cast<const AffineTransform<Dim>*>(transform.get())) {
+    return affine->affine_map();
+  }
+  if (const auto* rigid = dynamic_cast<const RigidTransform<Dim>*>(transform.get())) {
+    return rigid->affine_map();
+  }
+  throw InvalidInput(
+      message("--init ", file,
+              ": only an affine or rigid transform can be the start; warp the moving "
+              "image with this one first."));
+}
+
+RegionOfInterest read_region(const std::string& file, const Raster<2>& fixed, InputFiles& input,
+                             RunReport& report) {
+  const RegionOfInterest region = [&] {
+    if (has_ending(file, ".csv")) {
+      report.add_input("roi", file);
+      return read_region_of_interest(file);
+    }
+    const Mask<2> mask = input.mask<2>("roi", file);
+    return region_of_mask(mask.raster(), mask.values());
+  }();
+  const double outside = share_outside(region, fixed);
+  if (outside >= 1) {
+    throw InvalidInput(
+        message("--roi ", file,
+                ": the region lies outside the fixed image; give its points in mm in "
+                "the fixed image's space."));
+  }
+  if (outside > 1e-6) {
+    report.add_warning(fmt::format("--roi {}: {:.1f} % of the region lie outside the fixed image.",
+                                   file, 100 * outside));
+  }
+  return region;
+}
+
+template <int Dim>
+LabelImage<Dim> read_bodies(const RegisterOptions& options, const Raster<Dim>& fixed,
+                            InputFiles& input) {
+  const std::string& file = *options.rigid_labels;
+  LabelImage<Dim> labels = on_raster(input.labels<Dim>("rigid-labels", file), fixed);
+  if (std::ranges::none_of(labels.values(), [](std::int32_t label) { return label > 0; })) {
+    throw InvalidInput(
+        message("--rigid-labels ", file,
+                ": no label above 0 lies in the fixed image; label rigid bodies 1, 2, "
+                "... in its space."));
+  }
+  return labels;
+}
+
+}  // namespace
+
+int dimension_of(const RegisterOptions& options) {
+  const int dimension = InputFiles::common_dimension({options.fixed, options.moving});
+  if (dimension == 3 && options.is_triangular()) {
+    throw UsageError(message("--transform triangular-bspline works on 2D images, and ",
+                             options.fixed, " is 3D; take bspline, affine or rigid for volumes."));
+  }
+  return dimension;
+}
+
+template <int Dim>
+RegisterInput<Dim> read_input(const RegisterOptions& options, RunReport& report) {
+  InputFiles input(report, options.spacing);
+  RegisterInput<Dim> read;
+  read.fixed = input.image<Dim>("fixed", options.fixed);
+  read.moving = input.image<Dim>("moving", options.moving);
+  const Raster<Dim>& fixed = read.fixed.image.raster();
+  if (options.fixed_mask) {
+    read.fixed_mask = on_raster(input.mask<Dim>("fixed-mask", *options.fixed_mask), fixed);
+  }
+  if (options.moving_mask) {
+    read.moving_mask =
+        on_raster(input.mask<Dim>("moving-mask", *options.moving_mask), read.moving.image.raster());
+  }
+  if (options.rigid_labels) read.labels = read_bodies<Dim>(options, fixed, input);
+  if (!options.landmarks.empty()) read.landmarks = input.landmarks<Dim>(options.landmarks);
+  if constexpr (Dim == 2) {
+    if (options.roi) read.region = read_region(*options.roi, fixed, input, report);
+    if (options.feature_lines) {
+      read.feature_lines = read_feature_lines(*options.feature_lines);
+      report.add_input("feature-lines", *options.feature_lines);
+    }
+  }
+  if (options.init_is_file()) read.start = read_start<Dim>(*options.init, report);
+  input.check_spacing_was_used();
+  return read;
+}
+
+template RegisterInput<2> read_input<2>(const RegisterOptions&, RunReport&);
+template RegisterInput<3> read_input<3>(const RegisterOptions&, RunReport&);
+
+}  // namespace crease

@@ -1,0 +1,303 @@
+#include "Applications/RegisterOptions.h"
+
+#include <algorithm>
+
+#include "Applications/ExitCode.h"
+
+namespace crease {
+namespace {
+
+const std::vector<std::string> kStarts = {"moments", "centres", "landmarks", "identity"};
+
+/// Refuses an option that the transform chosen would ignore.
+void refuse_if(bool given, const char* option, const RegisterOptions& options, const char* needs) {
+  if (!given) return;
+  throw UsageError(message("--", option, " has no meaning with --transform ", options.transform,
+                           "; it needs ", needs, "."));
+}
+
+void check_transform(const RegisterOptions& o) {
+  if (!o.is_triangular()) {
+    const char* needs = "--transform triangular-bspline";
+    refuse_if(o.triangles.has_value(), "triangles", o, needs);
+    refuse_if(o.smoothness.has_value(), "smoothness", o, needs);
+    refuse_if(o.roi.has_value(), "roi", o, needs);
+    refuse_if(o.no_creases, "no-creases", o, needs);
+    refuse_if(o.feature_lines.has_value(), "feature-lines", o, needs);
+  }
+  if (!o.is_spline()) {
+    const char* needs = "a spline: --transform triangular-bspline or bspline";
+    refuse_if(o.degree.has_value(), "degree", o, needs);
+    refuse_if(o.mesh_size.has_value(), "mesh-size", o, needs);
+    refuse_if(o.rigid_labels.has_value(), "rigid-labels", o, needs);
+    refuse_if(o.beta.has_value(), "beta", o, needs);
+    refuse_if(o.gamma.has_value(), "gamma", o, needs);
+    refuse_if(o.init_transform.has_value(), "init-transform", o, needs);
+    refuse_if(o.landmarks_mode != "exact", "landmarks-mode", o, needs);
+    refuse_if(o.landmarks_conflict != "error", "landmarks-conflict", o, needs);
+    refuse_if(o.optimizer != "gauss-newton", "optimizer", o, needs);
+    refuse_if(o.null_space != "elimination", "null-space", o, needs);
+  }
+  if (o.smoothness && *o.smoothness > o.spline_degree() - 1) {
+    throw UsageError(message("--smoothness ", *o.smoothness, " needs --degree ", *o.smoothness + 1,
+                             " or more; the degree is ", o.spline_degree(), "."));
+  }
+}
+
+void check_landmarks(const RegisterOptions& o) {
+  if (o.landmarks.size() > 2) {
+    throw UsageError(
+        "--landmarks takes one CSV file, or two files of 3D Slicer: the fixed points "
+        "first.");
+  }
+  const bool has = !o.landmarks.empty();
+  const auto needs_landmarks = [&](bool given, const char* option) {
+    if (given && !has) throw UsageError(message("--", option, " needs --landmarks FILE."));
+  };
+  needs_landmarks(o.landmarks_mode != "exact", "landmarks-mode soft");
+  needs_landmarks(o.landmarks_conflict != "error", "landmarks-conflict compromise");
+  needs_landmarks(o.landmarks_sigma.has_value(), "landmarks-sigma");
+  needs_landmarks(o.init == "landmarks", "init landmarks");
+  if (o.landmarks_sigma && o.landmarks_mode != "soft") {
+    throw UsageError(
+        "--landmarks-sigma needs --landmarks-mode soft: exact landmarks have no "
+        "uncertainty.");
+  }
+}
+
+void check_weights(const RegisterOptions& o) {
+  if (!o.is_spline()) {
+    if (!o.has_metric() && o.landmarks.empty()) {
+      throw UsageError("--metric none leaves nothing to register by; give --landmarks FILE.");
+    }
+    return;
+  }
+  if (o.beta && !o.may_have_bodies()) {
+    throw UsageError(
+        "--beta weighs rigid bodies, but none are given; add --rigid-labels FILE or "
+        "--feature-lines FILE with closed lines.");
+  }
+  const bool bending = !o.gamma || *o.gamma > 0;
+  if (bending && o.spline_degree() == 1) {
+    throw UsageError(
+        "--degree 1: such splines have no bending energy; take --degree 2 or more, or "
+        "--gamma 0.");
+  }
+  const bool rigidity = o.may_have_bodies() && o.rigidity_weight() > 0;
+  if (o.image_weight() == 0 && !bending && !rigidity) {
+    throw UsageError(
+        "all weights are zero: give at least one of --alpha (with --metric ssd), --beta "
+        "and --gamma a value above 0.");
+  }
+  if (o.image_weight() == 0 && o.landmarks.empty()) {
+    throw UsageError(message(o.has_metric() ? "--alpha 0" : "--metric none",
+                             " leaves nothing to register by; give --landmarks FILE."));
+  }
+}
+
+void check_start(const RegisterOptions& o) {
+  if (o.init_is_file() && o.init_transform && *o.init_transform != "none") {
+    throw UsageError(
+        "--init with a file is the start as it is; it excludes --init-transform rigid "
+        "and affine.");
+  }
+}
+
+std::vector<Option> input_options(RegisterOptions& o) {
+  return {
+      {.name = "fixed",
+       .target = &o.fixed,
+       .placeholder = "FILE",
+       .help = "Fixed image: the space that results live in",
+       .required = true,
+       .is_path = true},
+      {.name = "moving",
+       .target = &o.moving,
+       .placeholder = "FILE",
+       .help = "Moving image: deformed to look like the fixed one",
+       .required = true,
+       .is_path = true},
+      {.name = "output",
+       .target = &o.output,
+       .placeholder = "DIR",
+       .help = "Folder of the results; made if missing",
+       .required = true,
+       .is_path = true,
+       .short_name = "o"},
+      {.name = "fixed-mask",
+       .target = &o.fixed_mask,
+       .placeholder = "FILE",
+       .help = "Image: samples count where it is not 0",
+       .is_path = true},
+      {.name = "moving-mask",
+       .target = &o.moving_mask,
+       .placeholder = "FILE",
+       .help = "The same in the moving image",
+       .is_path = true},
+      {.name = "spacing",
+       .target = &o.spacing,
+       .placeholder = "X,Y[,Z]",
+       .help = "Pixel size in mm of images whose files tell none (PNG, JPEG, PGM); otherwise 1",
+       .minimum = 0,
+       .open_minimum = true},
+  };
+}
+
+std::vector<Option> domain_options(RegisterOptions& o) {
+  return {
+      {.name = "transform",
+       .target = &o.transform,
+       .help = "What moves the image; triangular in 2D only, the others in 2D and 3D",
+       .choices = {"triangular-bspline", "bspline", "affine", "rigid"}},
+      {.name = "degree",
+       .target = &o.degree,
+       .placeholder = "N",
+       .help = "Degree of the spline, 1 to 5 (3)",
+       .minimum = 1,
+       .maximum = 5},
+      {.name = "smoothness",
+       .target = &o.smoothness,
+       .placeholder = "1|2",
+       .help = "Continuous derivatives away from creases (degree - 1)",
+       .minimum = 1,
+       .maximum = 2},
+      {.name = "mesh-size",
+       .target = &o.mesh_size,
+       .placeholder = "MM",
+       .help =
+           "Edge length of the triangles away from lines, or of the B-spline's spans (a twelfth "
+           "of the longer side)",
+       .minimum = 0,
+       .open_minimum = true},
+      {.name = "triangles",
+       .target = &o.triangles,
+       .placeholder = "N",
+       .help = "About as many triangles, instead of --mesh-size",
+       .minimum = 2,
+       .maximum = 2e6},
+      {.name = "roi",
+       .target = &o.roi,
+       .placeholder = "FILE",
+       .help = "Domain: CSV ring,x,y in mm, or a mask image (the whole image)",
+       .is_path = true},
+      {.name = "rigid-labels",
+       .target = &o.rigid_labels,
+       .placeholder = "FILE",
+       .help = "Label image, 0 soft, k > 0 rigid body k; outlines become creases",
+       .is_path = true},
+      {.name = "feature-lines",
+       .target = &o.feature_lines,
+       .placeholder = "FILE",
+       .help = "Creases: CSV line,x,y[,kind,body,corner] in mm, or curves of 3D Slicer",
+       .is_path = true},
+      {.name = "no-creases",
+       .target = &o.no_creases,
+       .help = "Keep the mesh, but be smooth across the lines"},
+  };
+}
+
+std::vector<Option> cost_options(RegisterOptions& o) {
+  return {
+      {.name = "landmarks",
+       .target = &o.landmarks,
+       .placeholder = "FILE",
+       .help =
+           "Pairs: CSV fixed_x,fixed_y,moving_x,moving_y in mm; or given twice, two files of 3D "
+           "Slicer, fixed first",
+       .is_path = true},
+      {.name = "landmarks-mode",
+       .target = &o.landmarks_mode,
+       .help = "Meet landmarks exactly, or up to their uncertainty",
+       .choices = {"exact", "soft"}},
+      {.name = "landmarks-sigma",
+       .target = &o.landmarks_sigma,
+       .placeholder = "MM",
+       .help = "Uncertainty of soft landmarks without their own sigma_mm (1)",
+       .minimum = 0,
+       .open_minimum = true},
+      {.name = "landmarks-conflict",
+       .target = &o.landmarks_conflict,
+       .help = "Exact landmarks that contradict each other: stop, or meet them on average",
+       .choices = {"error", "compromise"}},
+      {.name = "metric",
+       .target = &o.metric,
+       .help = "Likeness: sum of squared differences, or landmarks alone",
+       .choices = {"ssd", "none"}},
+      {.name = "interpolator",
+       .target = &o.interpolator,
+       .help = "Between the pixels of the moving image",
+       .choices = {"cubic", "linear"}},
+      {.name = "alpha",
+       .target = &o.alpha,
+       .placeholder = "A",
+       .help = "Weight of the images",
+       .minimum = 0},
+      {.name = "beta",
+       .target = &o.beta,
+       .placeholder = "B",
+       .help = "Weight of the rigidity of bodies (1)",
+       .minimum = 0},
+      {.name = "gamma",
+       .target = &o.gamma,
+       .placeholder = "G",
+       .help = "Weight of bending, mm^2 (0.001 times the mean edge length squared)",
+       .minimum = 0},
+  };
+}
+
+std::vector<Option> solver_options(RegisterOptions& o) {
+  return {
+      {.name = "init",
+       .target = &o.init,
+       .placeholder = "FILE",
+       .help = "Start: centres of mass, of images, fit of landmarks, or an affine transform's file "
+               "(landmarks where there are enough, else moments)",
+       .choices = kStarts,
+       .is_path = true},
+      {.name = "init-transform",
+       .target = &o.init_transform,
+       .help = "Search a rigid or affine map before the spline (none)",
+       .choices = {"rigid", "affine", "none"}},
+      {.name = "levels",
+       .target = &o.levels,
+       .placeholder = "L",
+       .help = "Resolutions of the image pyramid",
+       .minimum = 1,
+       .maximum = 12},
+      {.name = "optimizer",
+       .target = &o.optimizer,
+       .help = "How the minimum is sought",
+       .choices = {"gauss-newton", "steepest-descent"}},
+      {.name = "null-space",
+       .target = &o.null_space,
+       .help = "How exact landmarks are eliminated",
+       .choices = {"elimination", "qr", "svd"}},
+      {.name = "require-invertible",
+       .target = &o.require_invertible,
+       .help = "Exit with 1 when the map folds (results are written)"},
+  };
+}
+
+}  // namespace
+
+bool RegisterOptions::init_is_file() const {
+  return init && std::ranges::count(kStarts, *init) == 0;
+}
+
+std::vector<Option> options_of(RegisterOptions& options) {
+  std::vector<Option> all = input_options(options);
+  for (auto part : {domain_options(options), cost_options(options), solver_options(options),
+                    options_of(options.run)}) {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+void check(const RegisterOptions& options) {
+  check_transform(options);
+  check_landmarks(options);
+  check_weights(options);
+  check_start(options);
+}
+
+}  // namespace crease

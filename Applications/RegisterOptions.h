@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Applications/Option.h"
+#include "Applications/RunOptions.h"
+
+namespace crease {
+
+/// The options of `crease register`, as they were typed.
+struct RegisterOptions {
+  RunOptions run;
+  std::string fixed, moving, output;
+  std::string transform = "triangular-bspline";
+  std::optional<int> degree, smoothness;
+  std::optional<double> mesh_size;
+  std::optional<int> triangles;
+  std::optional<std::string> roi;
+  bool no_creases = false;
+  std::optional<std::string> feature_lines, rigid_labels;
+  std::vector<std::string> landmarks;
+  std::string landmarks_mode = "exact";
+  std::optional<double> landmarks_sigma;
+  std::string landmarks_conflict = "error";
+  std::string metric = "ssd";
+  std::optional<std::string> fixed_mask, moving_mask;
+  std::string interpolator = "cubic";
+  double alpha = 1;
+  std::optional<double> beta, gamma;
+  std::string optimizer = "gauss-newton";
+  std::string null_space = "elimination";
+  int levels = 3;
+  std::optional<std::string> init;
+  std::optional<std::string> init_transform;
+  std::vector<double> spacing;
+  bool require_invertible = false;
+
+  bool is_triangular() const { return transform == "triangular-bspline"; }
+  bool is_spline() const { return is_triangular() || transform == "bspline"; }
+  bool has_metric() const { return metric != "none"; }
+  int spline_degree() const { return degree.value_or(3); }
+  int spline_smoothness() const { return smoothness.value_or(spline_degree() - 1); }
+  /// Weights as they hold: alpha of the metric, beta of rigidity, 0 where a term is absent.
+  double image_weight() const { return has_metric() ? alpha : 0; }
+  double rigidity_weight() const { return beta.value_or(1); }
+  /// Whether bodies may be known, from labels or closed lines.
+  bool may_have_bodies() const { return rigid_labels || feature_lines; }
+  bool init_is_file() const;
+};
+
+/// The options that set these.
+std::vector<Option> options_of(RegisterOptions& options);
+
+/// What single options cannot tell: which ones exclude or need each other.
+/// @throws UsageError naming the options.
+void check(const RegisterOptions& options);
+
+}  // namespace crease

@@ -1,0 +1,170 @@
+#include "Applications/RegisterOutput.h"
+
+#include <algorithm>
+
+#include "Applications/TransformImages.h"
+#include "Core/Parallel.h"
+#include "Images/MakeInterpolator.h"
+#include "Images/Resample.h"
+#include "Registration/Pictures.h"
+#include "Transforms/TransformFile.h"
+
+namespace crease {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// The ending of a single file in the moving image's format; empty when it cannot be written.
+std::string single_file_ending(const std::string& moving, ImageFormat format) {
+  switch (format) {
+    case ImageFormat::kNifti:
+      return has_ending(moving, ".gz") ? ".nii.gz" : ".nii";
+    case ImageFormat::kMetaImage:
+      return ".mha";
+    case ImageFormat::kNrrd:
+      return ".nrrd";
+    case ImageFormat::kPng:
+      return ".png";
+    case ImageFormat::kJpeg:
+      return has_ending(moving, ".jpeg") ? ".jpeg" : ".jpg";
+    case ImageFormat::kTiff:
+      return has_ending(moving, ".tiff") ? ".tiff" : ".tif";
+    case ImageFormat::kPgm:
+      return ".pgm";
+    case ImageFormat::kDicom:
+      break;
+  }
+  return "";
+}
+
+template <int Dim>
+void write_warped(const OutputFolder& output, const RegisterOptions& options,
+                  const ReadImage<Dim>& moving, const Image<float, Dim>& warped) {
+  const std::string ending = single_file_ending(options.moving, moving.format);
+  const bool own_format = !ending.empty() && can_write(moving.format, moving.pixel_type);
+  if (own_format) {
+    output.write("warped" + ending,
+                 [&](const Path& file) { write_image(file, warped, moving.pixel_type); });
+  }
+  if (own_format && has_spacing(moving.format)) return;
+  output.write("warped.mha",
+               [&](const Path& file) { write_image(file, warped, PixelType::kFloat); });
+}
+
+/// Bodies to report on: of the label image, else those of the domain.
+template <int Dim>
+std::optional<LabelImage<Dim>> bodies_of(const RegisterInput<Dim>& input,
+                                         const RegisterOutcome<Dim>& outcome) {
+  if (input.labels) return *input.labels;
+  if constexpr (Dim == 2) {
+    if (outcome.domain && outcome.domain->has_bodies()) {
+      return body_labels(*outcome.domain, input.fixed.image.raster());
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+template <int Dim>
+RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                const Transform<Dim>& transform) {
+  const Raster<Dim>& raster = input.fixed.image.raster();
+  RegisterImages<Dim> images;
+  images.displacement = displacement_image(transform, raster);
+  const JacobianMap<Dim> jacobian = jacobian_map(transform, raster);
+  images.determinants = determinant_image(jacobian);
+  images.domain = Mask<Dim>(raster, jacobian.in_domain);
+  const auto kind =
+      options.interpolator == "linear" ? InterpolationKind::kLinear : InterpolationKind::kCubic;
+  images.warped =
+      resample(*make_interpolator(input.moving.image, kind), raster, row_map(images.displacement));
+  return images;
+}
+
+template <int Dim>
+Evaluation<Dim> evaluate_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                 const RegisterOutcome<Dim>& outcome,
+                                 const RegisterImages<Dim>& images) {
+  Mask<Dim> mask = images.domain;
+  if (input.fixed_mask) {
+    std::ranges::transform(mask.values(), input.fixed_mask->values(), mask.values().begin(),
+                           [](std::uint8_t a, std::uint8_t b) -> std::uint8_t { return a && b; });
+  }
+  const auto bodies = bodies_of(input, outcome);
+  EvaluationInput<Dim> parts;
+  parts.displacement = &images.displacement;
+  parts.determinants = &images.determinants;
+  parts.mask = &mask;
+  parts.labels = bodies ? &*bodies : nullptr;
+  if (options.has_metric()) {
+    parts.fixed = &input.fixed.image;
+    parts.moving = &input.moving.image;
+  }
+  return evaluate(parts);
+}
+
+template <int Dim>
+void write_results(const OutputFolder& output, const RegisterOptions& options,
+                   const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
+                   const RegisterImages<Dim>& images) {
+  write_warped(output, options, input.moving, images.warped);
+  output.write("displacement.mha",
+               [&](const Path& file) { write_displacement_field(file, images.displacement); });
+  output.write("jacobian.mha", [&](const Path& file) {
+    write_image(file, images.determinants, PixelType::kFloat);
+  });
+  output.write("transform.json",
+               [&](const Path& file) { save_transform(*outcome.transform, file); });
+}
+
+template <int Dim>
+void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
+                    const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images) {
+  const Image<float, Dim>& fixed = input.fixed.image;
+  const PointMap<Dim> stay = [](const Point<Dim>& x) { return x; };
+  const Image<float, Dim> before = resample(
+      *make_interpolator(input.moving.image, InterpolationKind::kLinear), fixed.raster(), stay);
+  DeformationDrawing<Dim> drawing;
+  drawing.fixed_raster = fixed.raster();
+  drawing.map = [&](const Point<Dim>& x) { return outcome.transform->map(x); };
+  drawing.landmarks = input.landmarks;
+  if constexpr (Dim == 2) {
+    if (outcome.domain) drawing.feature_lines = outcome.domain->feature_lines;
+  }
+  struct Job {
+    const char* name;
+    std::function<Picture()> draw;
+  };
+  const std::vector<Job> jobs = {
+      {"fixed", [&] { return image_picture(fixed, "fixed"); }},
+      {"moving", [&] { return image_picture(input.moving.image, "moving"); }},
+      {"warped", [&] { return image_picture(images.warped, "moving, warped to the fixed image"); }},
+      {"checkerboard", [&] { return checkerboard_picture(fixed, images.warped); }},
+      {"difference", [&] { return difference_picture(fixed, before, images.warped); }},
+      {"jacobian", [&] { return jacobian_picture(images.determinants); }},
+      {"grid", [&] { return deformation_picture(input.moving.image, drawing); }},
+  };
+  parallel_for(std::ssize(jobs), [&](std::int64_t i) {
+    const Job& job = jobs[static_cast<std::size_t>(i)];
+    output.write(std::string("pictures/") + job.name + ".png",
+                 [&](const Path& file) { write_picture(file, job.draw()); });
+  });
+}
+
+#define CREASE_INSTANTIATE(Dim)                                                                    \
+  template RegisterImages<Dim> make_images<Dim>(const RegisterOptions&, const RegisterInput<Dim>&, \
+                                                const Transform<Dim>&);                            \
+  template Evaluation<Dim> evaluate_outcome<Dim>(                                                  \
+      const RegisterOptions&, const RegisterInput<Dim>&, const RegisterOutcome<Dim>&,              \
+      const RegisterImages<Dim>&);                                                                 \
+  template void write_results<Dim>(const OutputFolder&, const RegisterOptions&,                    \
+                                   const RegisterInput<Dim>&, const RegisterOutcome<Dim>&,         \
+                                   const RegisterImages<Dim>&);                                    \
+  template void write_pictures<Dim>(const OutputFolder&, const RegisterInput<Dim>&,                \
+                                    const RegisterOutcome<Dim>&, const RegisterImages<Dim>&);
+CREASE_INSTANTIATE(2)
+CREASE_INSTANTIATE(3)
+#undef CREASE_INSTANTIATE
+
+}  // namespace crease

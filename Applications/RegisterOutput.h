@@ -1,0 +1,40 @@
+#pragma once
+
+#include "Applications/OutputFolder.h"
+#include "Applications/RegisterInput.h"
+#include "Applications/RegisterRun.h"
+#include "Registration/Evaluation.h"
+
+namespace crease {
+
+/// Images that follow from the transform, on the fixed grid.
+template <int Dim>
+struct RegisterImages {
+  DisplacementField<Dim> displacement;  ///< T(x) - x, mm
+  Image<float, Dim> determinants;       ///< det grad T
+  Mask<Dim> domain;                     ///< where the transform is defined
+  Image<float, Dim> warped;             ///< moving(T(x)); 0 outside the moving image
+};
+
+template <int Dim>
+RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                const Transform<Dim>& transform);
+
+/// Folds, bodies and match of the images, over the domain.
+template <int Dim>
+Evaluation<Dim> evaluate_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                 const RegisterOutcome<Dim>& outcome,
+                                 const RegisterImages<Dim>& images);
+
+/// warped.*, displacement.mha, jacobian.mha, transform.json.
+template <int Dim>
+void write_results(const OutputFolder& output, const RegisterOptions& options,
+                   const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
+                   const RegisterImages<Dim>& images);
+
+/// pictures/*.png for people.
+template <int Dim>
+void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
+                    const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images);
+
+}  // namespace crease

@@ -1,0 +1,237 @@
+#include "Applications/RegisterRun.h"
+
+#include <cmath>
+
+#include "Images/IntensityRange.h"
+#include "Images/Moments.h"
+#include "Optimizers/SteepestDescent.h"
+#include "Transforms/AffineTransform.h"
+#include "Transforms/LandmarkFits.h"
+#include "Transforms/RigidTransform.h"
+
+namespace crease {
+namespace {
+
+template <typename Image>
+const Image* pointer(const std::optional<Image>& image) {
+  return image ? &*image : nullptr;
+}
+
+AlignmentSearch search_of(const std::string& name) {
+  if (name == "rigid") return AlignmentSearch::kRigid;
+  return name == "affine" ? AlignmentSearch::kAffine : AlignmentSearch::kNone;
+}
+
+/// How A is found: what was asked for; without --init by landmarks where there are enough.
+template <int Dim>
+AlignmentOptions alignment_options(const RegisterOptions& options, int num_landmarks) {
+  AlignmentOptions alignment;
+  alignment.search =
+      search_of(options.is_spline() ? options.init_transform.value_or("none") : options.transform);
+  const int needed = alignment.search == AlignmentSearch::kAffine ? Dim + 1 : Dim;
+  const std::string start =
+      options.init.value_or(num_landmarks >= needed ? "landmarks" : "moments");
+  if (start == "landmarks") alignment.start = AlignmentStart::kLandmarks;
+  if (start == "centres") alignment.start = AlignmentStart::kCentres;
+  if (start == "identity") alignment.start = AlignmentStart::kIdentity;
+  if (!options.has_metric()) alignment.search = AlignmentSearch::kNone;
+  return alignment;
+}
+
+/// A, found or given.
+template <int Dim>
+Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                          RunReport& report, ProgressReporter& progress) {
+  progress.report({.stage = "alignment"});
+  if (input.start) return {.map = *input.start, .report = {}};
+  const AlignmentOptions wanted = alignment_options<Dim>(options, input.landmarks.size());
+  if (!options.has_metric() && wanted.start == AlignmentStart::kLandmarks) {
+    if (options.transform == "affine") {
+      return {fit_affine<Dim>(input.landmarks.fixed, input.landmarks.moving).affine_map(), {}};
+    }
+    return {fit_rigid<Dim>(input.landmarks.fixed, input.landmarks.moving).affine_map(), {}};
+  }
+  const auto found =
+      align(input.fixed.image, input.moving.image, pointer(input.fixed_mask),
+            pointer(input.moving_mask), input.landmarks, wanted, progress.callback());
+  if (!found.report.improved) {
+    report.add_warning("the initial alignment found no better map than its start, which was kept.");
+  }
+  return found;
+}
+
+template <int Dim>
+RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                    const Alignment<Dim>& alignment) {
+  RegisterOutcome<Dim> outcome;
+  const Point<Dim> centre = geometric_centre(input.fixed.image.raster());
+  if (options.transform == "rigid") {
+    outcome.transform = std::make_shared<RigidTransform<Dim>>(alignment.map, centre);
+  } else {
+    outcome.transform = std::make_shared<AffineTransform<Dim>>(alignment.map, centre);
+  }
+  const AlignmentReport& found = alignment.report;
+  const double width = intensity_percentiles(input.fixed.image, pointer(input.fixed_mask)).width();
+  const double scale = width > 0 ? 1 / (width * width) : 0;
+  outcome.alignment = alignment;
+  outcome.metric_before = scale * found.metric_before;
+  outcome.metric_after = scale * found.metric_after;
+  outcome.energies["image"] = outcome.metric_after;
+  outcome.weights["image"] = options.image_weight();
+  LevelReport level;
+  level.iterations = found.evaluations;
+  outcome.levels.push_back(level);
+  outcome.stopped_because = options.has_metric() ? "the search ended" : "fitted to the landmarks";
+  outcome.free_parameters = outcome.transform->num_parameters();
+  outcome.improved = !options.has_metric() || found.metric_after < found.metric_before;
+  return outcome;
+}
+
+/// The spline's basis and, for triangles, its domain.
+template <int Dim>
+struct Basis {
+  std::shared_ptr<const SplineBasis<Dim>> basis;
+  std::optional<CreasedDomain> domain;
+  WeightField<Dim> bodies;  // null: none
+};
+
+Basis<2> triangular_basis(const RegisterOptions& options, const RegisterInput<2>& input,
+                          RunReport& report) {
+  const CreasedDomainOptions wanted = {.degree = options.spline_degree(),
+                                       .smoothness = options.spline_smoothness(),
+                                       .creases = !options.no_creases,
+                                       .edge_length = options.mesh_size.value_or(0),
+                                       .num_triangles = options.triangles.value_or(0),
+                                       .rigid_bodies = options.rigidity_weight() > 0};
+  const RegionOfInterest region =
+      input.region ? *input.region : rectangle_of(input.fixed.image.raster());
+  CreasedDomain domain =
+      input.labels ? make_creased_domain(region, *input.labels, input.feature_lines, wanted)
+                   : make_creased_domain(region, input.feature_lines, wanted);
+  report.add_warnings(domain.warnings);
+  Basis<2> result{.basis = domain.basis, .domain = {}, .bodies = nullptr};
+  if (domain.has_bodies()) result.bodies = body_weights<2>();
+  result.domain = std::move(domain);
+  return result;
+}
+
+template <int Dim>
+Basis<Dim> make_basis(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                      RunReport& report) {
+  if constexpr (Dim == 2) {
+    if (options.is_triangular()) return triangular_basis(options, input, report);
+  }
+  const Raster<Dim>& raster = input.fixed.image.raster();
+  const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
+  Basis<Dim> result;
+  result.basis = std::make_shared<const TensorBSplineBasis<Dim>>(covering_lattice(raster, length),
+                                                                 options.spline_degree());
+  if (input.labels) result.bodies = label_weights(*input.labels);
+  return result;
+}
+
+NullSpaceKind null_space_of(const std::string& name) {
+  if (name == "qr") return NullSpaceKind::kQr;
+  return name == "svd" ? NullSpaceKind::kSvd : NullSpaceKind::kElimination;
+}
+
+template <int Dim>
+Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                          const AffineMap<Dim>& start, const Basis<Dim>& basis,
+                          std::map<std::string, double>& weights) {
+  Registration<Dim> registration = options.has_metric()
+                                       ? Registration<Dim>(input.fixed.image, input.moving.image)
+                                       : Registration<Dim>();
+  registration.initial(start).basis(basis.basis);
+  if (options.has_metric()) {
+    if (input.fixed_mask) registration.fixed_mask(*input.fixed_mask);
+    if (input.moving_mask) registration.moving_mask(*input.moving_mask);
+    registration.image_weight(options.alpha);
+    weights["image"] = options.alpha;
+  }
+  registration.interpolation(options.interpolator == "linear" ? InterpolationKind::kLinear
+                                                              : InterpolationKind::kCubic);
+  const bool rigid = basis.bodies && options.rigidity_weight() > 0;
+  weights["bending"] = options.gamma.value_or(default_bending_weight(*basis.basis));
+  if (weights["bending"] > 0) {
+    registration.energy("bending", weights["bending"],
+                        bending<Dim>(rigid ? basis.bodies : nullptr));
+  }
+  if (rigid) {
+    weights["rigidity"] = options.rigidity_weight();
+    registration.energy("rigidity", weights["rigidity"], rigidity<Dim>(basis.bodies));
+  }
+  if (!input.landmarks.empty()) {
+    LandmarkOptions landmarks;
+    if (options.landmarks_mode == "soft") landmarks.mode = LandmarkMode::kSoft;
+    if (options.landmarks_conflict == "compromise") {
+      landmarks.conflict = LandmarkConflict::kCompromise;
+    }
+    landmarks.sigma_mm = options.landmarks_sigma.value_or(landmarks.sigma_mm);
+    registration.landmarks(input.landmarks, landmarks);
+  }
+  if (options.optimizer == "steepest-descent") {
+    registration.optimizer(std::make_shared<SteepestDescent>(
+        OptimizerOptions{.relative_decrease = 1e-4, .max_iterations = 1000}));
+  }
+  registration.null_space(null_space_of(options.null_space));
+  Schedule schedule;
+  schedule.levels = options.levels;
+  registration.schedule(schedule);
+  return registration;
+}
+
+template <int Dim>
+RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                    const Alignment<Dim>& alignment, RunReport& report,
+                                    ProgressReporter& progress) {
+  progress.report({.stage = "domain", .fraction = 0.05});
+  Basis<Dim> basis = make_basis(options, input, report);
+  report.end_stage("domain");
+  RegisterOutcome<Dim> outcome;
+  outcome.alignment = alignment;
+  outcome.control_points = basis.basis->num_control_points();
+  outcome.domain_measure = basis.basis->measure();
+  try {
+    RegistrationResult<Dim> result =
+        compose(options, input, alignment.map, basis, outcome.weights).run(progress.callback());
+    for (const auto& [stage, seconds] : result.timings_s) report.add_part(stage, seconds);
+    report.add_warnings(result.warnings);
+    outcome.transform = result.transform;
+    outcome.metric_before = result.metric_before;
+    outcome.metric_after = result.metric_after;
+    outcome.energies = result.energies;
+    outcome.levels = std::move(result.levels);
+    outcome.stopped_because = result.stopped_because;
+    outcome.free_parameters = result.free_parameters;
+    outcome.converged = result.converged;
+    outcome.improved = result.improved;
+  } catch (const SolverError& error) {
+    report.add_warning(message("no solution: ", error.what(), " The result is the initial map."));
+    outcome.transform = std::make_shared<SplineTransform<Dim>>(basis.basis, alignment.map);
+    outcome.stopped_because = "the solver failed";
+    outcome.converged = outcome.improved = false;
+  }
+  report.end_stage("registration");
+  outcome.domain = std::move(basis.domain);
+  return outcome;
+}
+
+}  // namespace
+
+template <int Dim>
+RegisterOutcome<Dim> run_registration(const RegisterOptions& options,
+                                      const RegisterInput<Dim>& input, RunReport& report,
+                                      ProgressReporter& progress) {
+  const Alignment<Dim> start = find_start(options, input, report, progress);
+  report.end_stage("alignment");
+  if (!options.is_spline()) return affine_outcome(options, input, start);
+  return spline_outcome(options, input, start, report, progress);
+}
+
+template RegisterOutcome<2> run_registration<2>(const RegisterOptions&, const RegisterInput<2>&,
+                                                RunReport&, ProgressReporter&);
+template RegisterOutcome<3> run_registration<3>(const RegisterOptions&, const RegisterInput<3>&,
+                                                RunReport&, ProgressReporter&);
+
+}  // namespace crease

@@ -1,0 +1,122 @@
+#include "Applications/Sha256.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <fstream>
+#include <vector>
+
+#include "Core/Error.h"
+
+namespace crease {
+namespace {
+
+constexpr std::array<std::uint32_t, 64> kRoundConstants = {
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+constexpr std::size_t kBlockBytes = 64;
+
+/// The running hash: whole blocks are mixed in as they come, the rest waits.
+class Sha256State {
+ public:
+  void add(std::span<const std::byte> bytes) {
+    num_bytes_ += bytes.size();
+    while (!bytes.empty()) {
+      const std::size_t count = std::min(bytes.size(), kBlockBytes - filled_);
+      std::copy_n(bytes.begin(), count, block_.begin() + static_cast<std::ptrdiff_t>(filled_));
+      filled_ += count;
+      bytes = bytes.subspan(count);
+      if (filled_ == kBlockBytes) mix_block();
+    }
+  }
+
+  /// Appends the bit 1, zeros and the length in bits, and returns the digits.
+  std::string finish() {
+    const std::uint64_t num_bits = 8 * num_bytes_;
+    const std::array<std::byte, 1> one = {std::byte{0x80}};
+    const std::array<std::byte, 1> zero = {std::byte{0}};
+    add(one);
+    while (filled_ != kBlockBytes - 8) add(zero);
+    std::array<std::byte, 8> length;
+    for (int i = 0; i < 8; ++i) length[i] = static_cast<std::byte>(num_bits >> (56 - 8 * i));
+    add(length);
+    std::string digits;
+    for (const std::uint32_t word : hash_) {
+      for (int shift = 28; shift >= 0; shift -= 4) {
+        digits += "0123456789abcdef"[word >> shift & 15];
+      }
+    }
+    return digits;
+  }
+
+ private:
+  void mix_block() {
+    std::array<std::uint32_t, 64> w{};
+    for (std::size_t i = 0; i < kBlockBytes; ++i) {
+      w[i / 4] = w[i / 4] << 8 | std::to_integer<std::uint32_t>(block_[i]);
+    }
+    for (std::size_t i = 16; i < 64; ++i) {
+      const std::uint32_t s0 =
+          std::rotr(w[i - 15], 7) ^ std::rotr(w[i - 15], 18) ^ (w[i - 15] >> 3);
+      const std::uint32_t s1 = std::rotr(w[i - 2], 17) ^ std::rotr(w[i - 2], 19) ^ (w[i - 2] >> 10);
+      w[i] = w[i - 16] + s0 + w[i - 7] + s1;
+    }
+    auto [a, b, c, d, e, f, g, h] = hash_;
+    for (std::size_t i = 0; i < 64; ++i) {
+      const std::uint32_t s1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
+      const std::uint32_t t1 = h + s1 + ((e & f) ^ (~e & g)) + kRoundConstants[i] + w[i];
+      const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
+      const std::uint32_t t2 = s0 + ((a & b) ^ (a & c) ^ (b & c));
+      h = g;
+      g = f;
+      f = e;
+      e = d + t1;
+      d = c;
+      c = b;
+      b = a;
+      a = t1 + t2;
+    }
+    const std::array<std::uint32_t, 8> mixed = {a, b, c, d, e, f, g, h};
+    for (std::size_t i = 0; i < 8; ++i) hash_[i] += mixed[i];
+    filled_ = 0;
+  }
+
+  std::array<std::uint32_t, 8> hash_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                                        0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  std::array<std::byte, kBlockBytes> block_{};
+  std::size_t filled_ = 0;
+  std::uint64_t num_bytes_ = 0;
+};
+
+}  // namespace
+
+std::string sha256(std::span<const std::byte> bytes) {
+  Sha256State state;
+  state.add(bytes);
+  return state.finish();
+}
+
+std::string sha256_of_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Sha256State state;
+  std::vector<char> buffer(1 << 16);
+  while (stream) {
+    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    const auto count = static_cast<std::size_t>(stream.gcount());
+    state.add(std::as_bytes(std::span(buffer.data(), count)));
+  }
+  if (!stream.eof()) {
+    throw FileError(
+        message(file.string(), ": cannot be read; check that it exists and is readable."));
+  }
+  return state.finish();
+}
+
+}  // namespace crease

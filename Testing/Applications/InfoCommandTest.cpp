@@ -1,0 +1,123 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "Images/ImageFile.h"
+#include "Testing/Applications/CommandRunner.h"
+#include "Testing/Applications/TemporaryFolder.h"
+#include "Transforms/CompositeTransform.h"
+#include "Transforms/Domains/KnotPlacement.h"
+#include "Transforms/Domains/StructuredTriangulation.h"
+#include "Transforms/RigidTransform.h"
+#include "Transforms/SplineTransform.h"
+#include "Transforms/Splines/TriangularBSplineBasis.h"
+#include "Transforms/TransformFile.h"
+
+namespace crease {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::run_crease;
+
+class InfoCommand : public ::testing::Test {
+ protected:
+  nlohmann::json info(const std::string& file) const {
+    const auto run = run_crease({"info", file, "--json"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return nlohmann::json::parse(run.out);
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(InfoCommand, DescribesImages) {
+  Raster<2> raster;
+  raster.size = {5, 4};
+  raster.spacing = {0.5, 2};
+  raster.origin = {-1, 7};
+  Image<float, 2> image(raster, 1);
+  image(1, 1) = -3;
+  image(2, 1) = std::numeric_limits<float>::quiet_NaN();
+  const std::string file = (folder / "image.mha").string();
+  write_image(file, image, PixelType::kFloat);
+  const auto json = info(file);
+  EXPECT_EQ(json["kind"], "image");
+  EXPECT_EQ(json["size"], (std::vector<int>{5, 4}));
+  EXPECT_EQ(json["spacing_mm"], (std::vector<double>{0.5, 2}));
+  EXPECT_EQ(json["origin_mm"], (std::vector<double>{-1, 7}));
+  EXPECT_EQ(json["type"], "float");
+  EXPECT_EQ(json["min"], -3);
+  EXPECT_EQ(json["max"], 1);
+  EXPECT_EQ(json["not_finite"], 1);
+  const auto text = run_crease({"info", file}).out;
+  for (const char* part : {"MetaImage", "5 x 4 pixels", "spacing 0.5 x 2 mm", "1 not finite"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+TEST_F(InfoCommand, DescribesTriangularSplines) {
+  Box<2> box;
+  box.lower = {0, 0};
+  box.upper = {6, 6};
+  FeatureLine line;
+  line.points = {{1, 3}, {3, 1}, {5, 3}, {3, 5}};
+  line.closed = true;
+  const auto mesh = attach_feature_lines(structured_triangulation(box, 6, 6), {line});
+  const auto basis = std::make_shared<const TriangularBSplineBasis<2>>(place_knots(mesh).net);
+  const std::string file = (folder / "t.json").string();
+  save_transform(SplineTransform<2>(basis), file);
+  const auto json = info(file);
+  EXPECT_EQ(json["kind"], "transform");
+  EXPECT_EQ(json["type"], "spline");
+  EXPECT_EQ(json["basis"], "triangular");
+  EXPECT_EQ(json["degree"], 3);
+  EXPECT_EQ(json["simplices"], 72);
+  EXPECT_EQ(json["control_points"], 361);
+  EXPECT_EQ(json["crease_edges"], 8);
+  EXPECT_THAT(run_crease({"info", file}).out, HasSubstr("72 triangles"));
+}
+
+TEST_F(InfoCommand, DescribesChains) {
+  std::vector<std::unique_ptr<Transform<3>>> parts;
+  parts.push_back(std::make_unique<RigidTransform<3>>());
+  parts.push_back(std::make_unique<RigidTransform<3>>());
+  const std::string file = (folder / "chain.json").string();
+  save_transform(CompositeTransform<3>(std::move(parts)), file);
+  const auto json = info(file);
+  EXPECT_EQ(json["type"], "composite");
+  EXPECT_EQ(json["in_dimension"], 3);
+  EXPECT_EQ(json["parts"].size(), 2u);
+}
+
+TEST_F(InfoCommand, DescribesTables) {
+  const auto landmarks =
+      info(folder.write("l.csv", "fixed_x,fixed_y,moving_x,moving_y\n0,0,3,4\n1,1,1,1\n"));
+  EXPECT_EQ(landmarks["kind"], "landmarks");
+  EXPECT_EQ(landmarks["count"], 2);
+  EXPECT_EQ(landmarks["distance_mm"]["max"], 5);
+  const auto lines =
+      info(folder.write("f.csv", "line,x,y\n1,0,0\n1,3,0\n1,3,4\n1,0,0\n2,5,5\n2,6,5\n"));
+  EXPECT_EQ(lines["kind"], "feature lines");
+  EXPECT_EQ(lines["count"], 2);
+  EXPECT_TRUE(lines["lines"][0]["closed"].get<bool>());
+  EXPECT_EQ(lines["lines"][0]["length_mm"], 12);
+  const auto region = info(folder.write("r.csv", "ring,x,y\n0,0,0\n0,4,0\n0,4,5\n0,0,5\n"));
+  EXPECT_EQ(region["kind"], "region of interest");
+  EXPECT_EQ(region["area_mm2"], 20);
+}
+
+TEST_F(InfoCommand, RefusesWhatItDoesNotUnderstand) {
+  const auto refused = [](const std::string& file, int code, const char* text) {
+    const auto run = run_crease({"info", file});
+    EXPECT_EQ(run.code, code);
+    EXPECT_THAT(run.err, HasSubstr(text));
+  };
+  refused("nowhere.png", 3, "nowhere.png");
+  refused(folder.write("t.csv", "a,b\n1,2\n"), 3, "t.csv");
+  refused(folder.write("t.json", "{}"), 3, "t.json");
+  EXPECT_EQ(run_crease({"info"}).code, 2);
+}
+
+}  // namespace
+}  // namespace crease

@@ -1,0 +1,71 @@
+#include "Applications/OutputFolder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "Applications/ExitCode.h"
+#include "Testing/Applications/TemporaryFolder.h"
+
+namespace crease {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(OutputFolder, RemovesAnEarlierResultAndUnfinishedFiles) {
+  const testing::TemporaryFolder folder;
+  folder.write("result.json", "{}");
+  folder.write(".crease-unfinished-warped.mha", "half");
+  folder.write("mine.txt", "kept");
+  const OutputFolder output(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / "result.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / ".crease-unfinished-warped.mha"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "mine.txt"));
+}
+
+TEST(OutputFolder, ShowsAFileOnlyWhenItIsComplete) {
+  const testing::TemporaryFolder folder;
+  const OutputFolder output(folder / "new/deep");
+  const auto file = folder / "new/deep/pictures/a.nii.gz";
+  output.write("pictures/a.nii.gz", [&](const std::filesystem::path& temporary) {
+    EXPECT_TRUE(temporary.string().ends_with(".nii.gz"));
+    std::ofstream(temporary) << "content";
+    EXPECT_FALSE(std::filesystem::exists(file));
+  });
+  EXPECT_EQ(testing::read_text(file), "content");
+  EXPECT_THROW(output.write("b.txt",
+                            [](const std::filesystem::path& temporary) {
+                              std::ofstream(temporary) << "half";
+                              throw InvalidInput("stop");
+                            }),
+               InvalidInput);
+  output.finish("{}\n");
+  EXPECT_EQ(testing::read_text(folder / "new/deep/result.json"), "{}\n");
+  int count = 0;
+  for ([[maybe_unused]] const auto& entry :
+       std::filesystem::recursive_directory_iterator(folder / "new/deep")) {
+    ++count;
+  }
+  EXPECT_EQ(count, 3);  // pictures, a.nii.gz, result.json: nothing half done is left
+}
+
+TEST(OutputFolder, SaysWhenItCannotBeMade) {
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.write("file", "");
+  EXPECT_THAT([&] { OutputFolder output(file); },
+              ThrowsMessage<UsageError>(HasSubstr("--output " + file)));
+  EXPECT_THAT([&] { OutputFolder output(folder / "file/below"); },
+              ThrowsMessage<UsageError>(HasSubstr("cannot be made")));
+}
+
+TEST(OutputFolder, RefusesToOverwriteItsInputs) {
+  const testing::TemporaryFolder folder;
+  const std::string input = folder.write("warped.mha", "image");
+  const OutputFolder output(folder.path(), {input});
+  EXPECT_THAT([&] { output.write_text("warped.mha", "new"); },
+              ThrowsMessage<UsageError>(HasSubstr("warped.mha")));
+  EXPECT_EQ(testing::read_text(input), "image");
+}
+
+}  // namespace
+}  // namespace crease

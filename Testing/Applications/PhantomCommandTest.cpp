@@ -1,0 +1,98 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "Images/ImageFile.h"
+#include "Registration/Landmarks.h"
+#include "Testing/Applications/CommandRunner.h"
+#include "Testing/Applications/TemporaryFolder.h"
+#include "Transforms/Domains/FeatureLineFile.h"
+
+namespace crease {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::read_result;
+using testing::run_crease;
+using testing::TemporaryFolder;
+
+TEST(PhantomCommand, WritesWhatItsKindHas) {
+  const TemporaryFolder folder;
+  const auto run = run_crease({"phantom", "bodies", "--size", "96", "-o", folder.path().string()});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("bodies: 96 x 96 pixels, 3 bodies, 13 landmarks"));
+  const auto fixed = read_image<2>(folder / "fixed.mha");
+  EXPECT_EQ(fixed.image.size(), (std::array<int, 2>{96, 96}));
+  EXPECT_EQ(fixed.image.raster().spacing, Vector<2>(1, 1));
+  EXPECT_EQ(read_image<2>(folder / "moving.mha").image.size(), fixed.image.size());
+  EXPECT_EQ(read_displacement_field<2>(folder / "truth.mha").size(), fixed.image.size());
+  EXPECT_EQ(read_labels<2>(folder / "labels.mha").size(), fixed.image.size());
+  EXPECT_EQ(read_labels<2>(folder / "moving-labels.mha").size(), fixed.image.size());
+  EXPECT_EQ(read_landmarks<2>(folder / "landmarks.csv").size(), 13);
+  EXPECT_EQ(read_feature_lines(folder / "feature-lines.csv").size(), 3u);
+  const auto phantom = nlohmann::json::parse(testing::read_text(folder / "phantom.json"));
+  EXPECT_EQ(phantom["kind"], "bodies");
+  ASSERT_EQ(phantom["bodies"].size(), 3u);
+  EXPECT_NEAR(phantom["bodies"][0]["angle_deg"].get<double>(), 12, 1e-12);
+  const auto result = read_result(folder.path());
+  EXPECT_EQ(result["command"], "phantom");
+  EXPECT_EQ(result["status"], "ok");
+  EXPECT_TRUE(std::filesystem::exists(folder / "config.toml"));
+}
+
+TEST(PhantomCommand, BlobsHaveNeitherBodiesNorLandmarks) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_crease({"phantom", "blobs", "--size", "64", "-o", folder.path().string()}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "truth.mha"));
+  for (const char* name : {"labels.mha", "landmarks.csv", "feature-lines.csv"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
+}
+
+TEST(PhantomCommand, SeedAloneDecidesTheBytes) {
+  const TemporaryFolder folder;
+  const auto bytes = [&](const std::string& name, const std::string& seed,
+                         const std::string& threads) {
+    const std::string output = (folder / name).string();
+    EXPECT_EQ(run_crease({"phantom", "spine", "--size", "64", "--seed", seed, "--threads", threads,
+                          "-o", output})
+                  .code,
+              0);
+    return testing::read_text(folder / (name + "/fixed.mha"));
+  };
+  const std::string first = bytes("a", "5", "1");
+  EXPECT_EQ(bytes("b", "5", "8"), first);
+  EXPECT_NE(bytes("c", "6", "1"), first);
+}
+
+TEST(PhantomCommand, ConfigurationRepeatsIt) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_crease({"phantom", "spine", "--size", "64", "--noise", "0.03", "--no-texture", "-o",
+                        (folder / "a").string()})
+                .code,
+            0);
+  const auto again = run_crease(
+      {"phantom", "--config", (folder / "a/config.toml").string(), "-o", (folder / "b").string()});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(testing::read_text(folder / "a/fixed.mha"), testing::read_text(folder / "b/fixed.mha"));
+}
+
+TEST(PhantomCommand, RefusesWhatItCannotDraw) {
+  const TemporaryFolder folder;
+  const std::string output = (folder / "x").string();
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"phantom", "sliding", "-o", output},  // of a later version
+           {"phantom", "bodies", "--size", "8", "-o", output},
+           {"phantom", "bodies", "--noise", "0.9", "-o", output},
+           {"phantom", "-o", output},
+           {"phantom", "bodies"}}) {
+    const auto run = run_crease(arguments);
+    EXPECT_EQ(run.code, 2) << ::testing::PrintToString(arguments);
+    EXPECT_THAT(run.err, ::testing::StartsWith("crease phantom: "));
+  }
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+}  // namespace
+}  // namespace crease

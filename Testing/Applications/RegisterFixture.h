@@ -1,0 +1,59 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "Images/ImageFile.h"
+#include "Registration/Phantoms/Phantom.h"
+#include "Testing/Applications/CommandRunner.h"
+#include "Testing/Applications/TemporaryFolder.h"
+
+namespace crease::testing {
+
+/// Small images of a phantom without bodies on disk, and a short way to register them.
+class RegisterFixture : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    images_ = std::make_unique<TemporaryFolder>();
+    PhantomOptions options;
+    options.size = 64;
+    const Phantom phantom = make_phantom("blobs", options);
+    write_image(*images_ / "fixed.mha", phantom.fixed, PixelType::kFloat);
+    write_image(*images_ / "moving.mha", phantom.moving, PixelType::kFloat);
+    write_displacement_field(*images_ / "truth.mha", phantom.displacement);
+  }
+  static void TearDownTestSuite() { images_.reset(); }
+
+  static std::string image(const std::string& name) { return (*images_ / name).string(); }
+  std::string output() const { return (folder / "out").string(); }
+
+  /// `crease register` of the two images with a coarse mesh.
+  CommandResult run(const std::vector<std::string>& extra = {}) const {
+    return run_with(image("fixed.mha"), image("moving.mha"), extra);
+  }
+  CommandResult run_with(const std::string& fixed, const std::string& moving,
+                         const std::vector<std::string>& extra) const {
+    std::vector<std::string> arguments = {"register", "--fixed", fixed,    "--moving", moving,
+                                          "--output", output(),  "--init", "identity", "--quiet"};
+    const auto has = [&](const char* name) {
+      return std::find(extra.begin(), extra.end(), name) != extra.end();
+    };
+    if (has("--init")) arguments.erase(arguments.end() - 3, arguments.end() - 1);
+    const bool is_affine = has("affine") || has("rigid");
+    if (!has("--mesh-size") && !has("--triangles") && !is_affine) {
+      arguments.insert(arguments.end(), {"--mesh-size", "16"});
+    }
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return run_crease(arguments);
+  }
+
+  TemporaryFolder folder;
+
+ private:
+  static inline std::unique_ptr<TemporaryFolder> images_;
+};
+
+}  // namespace crease::testing

@@ -1,0 +1,209 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "Images/ImageFile.h"
+#include "Testing/Applications/CommandRunner.h"
+#include "Testing/Applications/TemporaryFolder.h"
+#include "Transforms/AffineTransform.h"
+#include "Transforms/SplineTransform.h"
+#include "Transforms/Splines/TensorBSplineBasis.h"
+#include "Transforms/TransformFile.h"
+
+namespace crease {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::read_text;
+using testing::run_crease;
+
+/// A smooth spline, an affine map and an image, on disk.
+class WarpCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Raster<2> raster;
+    raster.size = {40, 32};
+    raster.spacing = {1, 1.5};
+    raster.origin = {-3, 2};
+    Image<float, 2> image(raster);
+    LabelImage<2> labels(raster);
+    for (int j = 0; j < 32; ++j) {
+      for (int i = 0; i < 40; ++i) {
+        image(i, j) = static_cast<float>(std::sin(0.3 * i) + std::cos(0.2 * j));
+        labels(i, j) = (i / 8 + j / 8) % 3;
+      }
+    }
+    write_image(folder / "image.mha", image, PixelType::kFloat);
+    write_labels(folder / "labels.mha", labels);
+
+    const auto basis =
+        std::make_shared<const TensorBSplineBasis<2>>(covering_lattice(raster, 10.0));
+    SplineTransform<2> spline(basis);
+    ControlPoints<2> phi(2, basis->num_control_points());
+    for (Eigen::Index i = 0; i < phi.cols(); ++i) {
+      phi.col(i) << std::sin(1.7 * static_cast<double>(i)), std::cos(2.9 * static_cast<double>(i));
+    }
+    spline.set_control_points(phi);
+    save_transform(spline, folder / "spline.json");
+    AffineMap<2> map;
+    map.linear << 0, -1, 1, 0;
+    map.offset << 30, 4;
+    save_transform(AffineTransform<2>(map), folder / "turn.json");
+  }
+  std::string file(const std::string& name) const { return (folder / name).string(); }
+  /// The numbers of a CSV file with a header.
+  static std::vector<std::vector<double>> rows(const std::string& text) {
+    std::istringstream lines(text);
+    std::vector<std::vector<double>> result;
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      std::istringstream cells(line);
+      result.emplace_back();
+      for (std::string cell; std::getline(cells, cell, ',');)
+        result.back().push_back(std::stod(cell));
+    }
+    return result;
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(WarpCommand, MapsPointsThroughAChainFirstTransformFirst) {
+  const std::string points = folder.write("in.csv", "x,y,name\n10,20,a\n1.5,-2,b\n");
+  const auto run =
+      run_crease({"warp", "--transform", file("spline.json"), "--transform", file("turn.json"),
+                  "--points", points, "--output-points", file("out.csv"), "--quiet"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string text = read_text(folder / "out.csv");
+  EXPECT_THAT(text, ::testing::StartsWith("x,y,name\n"));
+  EXPECT_THAT(text, HasSubstr(",a\n"));
+  const auto spline = load_transform<2>(folder / "spline.json");
+  const Point<2> y = spline->map({10, 20});
+  std::istringstream first(text.substr(text.find('\n') + 1));
+  double a = 0, b = 0;
+  char comma = 0;
+  first >> a >> comma >> b;
+  EXPECT_EQ(a, 30 - y.y());  // to the last bit: numbers are written in full
+  EXPECT_EQ(b, 4 + y.x());
+}
+
+TEST_F(WarpCommand, InverseUndoesIt) {
+  const std::string points = folder.write("in.csv", "x,y\n10,20\n1.5,9\n30,41\n");
+  const std::vector<std::string> chain = {"--transform", file("spline.json"), "--transform",
+                                          file("turn.json")};
+  const auto run = [&](const std::string& in, const std::string& out,
+                       const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments = {"warp", "--points", in, "--output-points",
+                                          out,    "--quiet"};
+    arguments.insert(arguments.end(), chain.begin(), chain.end());
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const auto result = run_crease(arguments);
+    EXPECT_EQ(result.code, 0) << result.err;
+  };
+  run(points, file("there.csv"), {});
+  run(file("there.csv"), file("back.csv"), {"--inverse"});
+  const auto in = rows(read_text(points)), back = rows(read_text(folder / "back.csv"));
+  ASSERT_EQ(back.size(), in.size());
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    EXPECT_NEAR(back[i][0], in[i][0], 1e-6);
+    EXPECT_NEAR(back[i][1], in[i][1], 1e-6);
+  }
+}
+
+TEST_F(WarpCommand, WritesTheDisplacementField) {
+  ASSERT_EQ(run_crease({"warp", "--transform", file("spline.json"), "--reference",
+                        file("image.mha"), "--displacement", file("u.mha"), "--quiet"})
+                .code,
+            0);
+  const auto field = read_displacement_field<2>(folder / "u.mha");
+  const auto spline = load_transform<2>(folder / "spline.json");
+  for (const auto& [i, j] : {std::pair{0, 0}, {17, 5}, {39, 31}}) {
+    const Point<2> x = field.raster().point(Vector<2>(i, j));
+    EXPECT_LT((field(i, j) - (spline->map(x) - x)).norm(), 1e-12);
+  }
+}
+
+TEST_F(WarpCommand, WarpsImagesAndLabels) {
+  ASSERT_EQ(run_crease({"warp", "--transform", file("turn.json"), "--moving", file("labels.mha"),
+                        "--reference", file("image.mha"), "--output-image", file("w.mha"),
+                        "--interpolator", "nearest", "--outside", "7", "--quiet"})
+                .code,
+            0);
+  const auto warped = read_labels<2>(folder / "w.mha");
+  const auto labels = read_labels<2>(folder / "labels.mha");
+  EXPECT_EQ(read_image<2>(folder / "w.mha").pixel_type, PixelType::kUint8);  // as the moving image
+  int outside = 0;
+  for (int j = 0; j < 32; ++j) {
+    for (int i = 0; i < 40; ++i) {
+      const Point<2> x = warped.raster().point(Vector<2>(i, j));
+      const Vector<2> index = labels.raster().index({30 - x.y(), 4 + x.x()});
+      const int a = static_cast<int>(std::round(index.x())),
+                b = static_cast<int>(std::round(index.y()));
+      const bool inside = a >= 0 && a < 40 && b >= 0 && b < 32;
+      const Vector<2> beyond = index - Vector<2>(std::floor(index.x()), std::floor(index.y()));
+      const bool tie = ((beyond.array() - 0.5).abs() < 1e-6).any();
+      if (!inside) ++outside;
+      if (tie) continue;
+      EXPECT_EQ(warped(i, j), inside ? labels(a, b) : 7) << i << ", " << j;
+    }
+  }
+  EXPECT_GT(outside, 0);
+}
+
+TEST_F(WarpCommand, InverseImageOfAWarpedImageIsTheImage) {
+  const auto warp = [&](const char* moving, const char* output, bool inverse) {
+    std::vector<std::string> arguments = {
+        "warp",        "--transform",     file("spline.json"), "--moving",   file(moving),
+        "--reference", file("image.mha"), "--output-image",    file(output), "--quiet"};
+    if (inverse) arguments.push_back("--inverse");
+    const auto run = run_crease(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+  };
+  warp("image.mha", "there.mha", false);
+  warp("there.mha", "back.mha", true);
+  const auto image = read_image<2>(folder / "image.mha").image;
+  const auto back = read_image<2>(folder / "back.mha").image;
+  for (int j = 6; j < 26; ++j) {
+    for (int i = 6; i < 34; ++i) EXPECT_NEAR(back(i, j), image(i, j), 0.02);  // interpolated twice
+  }
+}
+
+TEST_F(WarpCommand, RefusesContradictions) {
+  const std::string t = file("turn.json"), m = file("image.mha");
+  const auto refused = [&](const std::vector<std::string>& extra, int code, const char* text) {
+    std::vector<std::string> arguments = {"warp"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const auto run = run_crease(arguments);
+    EXPECT_EQ(run.code, code) << ::testing::PrintToString(extra);
+    EXPECT_THAT(run.err, ::testing::HasSubstr("crease warp: "));
+    EXPECT_THAT(run.err, HasSubstr(text));
+  };
+  refused({}, 2, "--transform");
+  refused({"--transform", t}, 2, "nothing to do");
+  refused({"--transform", t, "--moving", m}, 2, "--moving needs --output-image");
+  refused({"--transform", t, "--moving", m, "--output-image", "w.mha"}, 2, "--reference");
+  refused({"--transform", t, "--points", m}, 2, "--points needs --output-points");
+  refused({"--transform", t, "--displacement", "u.mha"}, 2, "--reference");
+  refused({"--transform", "none.json", "--displacement", "u.mha", "--reference", m}, 3,
+          "none.json");
+  refused({"--transform", m, "--displacement", "u.mha", "--reference", m}, 3, "image.mha");
+  const std::string points = folder.write("p.csv", "x,y\n1,nan\n");
+  refused({"--transform", t, "--points", points, "--output-points", file("o.csv")}, 3, "p.csv");
+}
+
+TEST_F(WarpCommand, TellsItsFiguresAsJson) {
+  const std::string points = folder.write("in.csv", "x,y\n10,20\n");
+  const auto run = run_crease({"warp", "--transform", file("turn.json"), "--points", points,
+                               "--output-points", file("out.csv"), "--json", "--quiet"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["command"], "warp");
+  EXPECT_EQ(json["num_points"], 1);
+  EXPECT_EQ(json["inputs"].size(), 2u);
+}
+
+}  // namespace
+}  // namespace crease

@@ -8,7 +8,7 @@ namespace crease {
 class Minimization;
 
 struct GaussNewtonOptions {
-  LinearSolverOptions linear_solver;
+  LinearSolverOptions linear_solver = {};
   double initial_damping = 1e-3;  ///< mu, relative to the diagonal
   int max_shortenings = 2;  ///< of a step that did not lower the value, before mu grows fourfold
   double shortening = 0.35;

@@ -73,7 +73,7 @@ class Faulty final : public ObjectiveFunction {
 class EveryOptimizer : public ::testing::TestWithParam<Method> {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryOptimizer, ::testing::ValuesIn(kMethods),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST_P(EveryOptimizer, FindsTheSameMinimumInEveryNullSpace) {
   auto function = convex_problem(7, 2);

@@ -1,0 +1,13 @@
+# The README holds the example word for word, indented by four spaces, in at most twenty lines.
+file(STRINGS ${SOURCE}/Documentation/examples/composition.cpp lines)
+file(READ ${SOURCE}/README.md readme)
+list(LENGTH lines count)
+if(count GREATER 20)
+  message(FATAL_ERROR "the composition has ${count} lines; it must fit in 20")
+endif()
+foreach(line IN LISTS lines)
+  string(FIND "${readme}" "    ${line}" position)
+  if(position EQUAL -1)
+    message(FATAL_ERROR "README.md lacks this line of the composition:\n${line}")
+  endif()
+endforeach()

@@ -46,7 +46,8 @@ struct PhantomOptions {
   int size = 0;            ///< pixels per axis, 64 to 4096; 0: the kind's default
   std::uint64_t seed = 1;  ///< of texture and noise; other than 1: moves the bodies a little, too
   bool texture = true;     ///< soft tissue that shows structure; false: plain greys
-  std::optional<double> noise = {};   ///< deviation of the pixel noise, 0 to 0.5; default: the kind's
+  std::optional<double> noise =
+      {};                        ///< deviation of the pixel noise, 0 to 0.5; default: the kind's
   double landmark_noise_mm = 0;  ///< deviation of each coordinate of the moving landmarks, >= 0
 };
 

@@ -69,11 +69,16 @@ MarkedRing marked(const Polyline& ring, const std::vector<Point<2>>& meetings, d
 }
 
 Polyline sampled_ring(MarkedRing ring, const LineArrangementOptions& options, bool keep_points) {
-  const bool keep = keep_points || !is_dense(ring.points, true, options.border_length);
+  constexpr int kFewestEdges = 10;  // of a small hole
+  const double longest = polyline_length(ring.points, true) / kFewestEdges;
+  const auto length = [&](const Point<2>& p) {
+    return std::min(options.border_length(p), longest);
+  };
+  const bool keep = keep_points || !is_dense(ring.points, true, length);
   const CurveSamplingOptions sampling{.tolerance = keep ? 0 : options.tolerance,
                                       .smallest_edge = keep ? 0 : 0.4};
   if (ring.marks.empty()) {
-    return sample_curve(ring.points, true, options.border_length, sampling).points;
+    return sample_curve(ring.points, true, length, sampling).points;
   }
   const auto first = static_cast<std::ptrdiff_t>(ring.marks[0]);
   std::rotate(ring.points.begin(), ring.points.begin() + first, ring.points.end());
@@ -84,7 +89,7 @@ Polyline sampled_ring(MarkedRing ring, const LineArrangementOptions& options, bo
     const std::size_t to =
         m + 1 < ring.marks.size() ? ring.marks[m + 1] - ring.marks[0] : ring.points.size() - 1;
     const auto stretch = std::span(ring.points).subspan(from, to - from + 1);
-    const auto part = sample_curve(stretch, false, options.border_length, sampling).points;
+    const auto part = sample_curve(stretch, false, length, sampling).points;
     result.insert(result.end(), part.begin(), part.end() - 1);
   }
   return result;

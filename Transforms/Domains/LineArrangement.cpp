@@ -298,8 +298,11 @@ bool Arranger::insert_crossings_once() {
 
 void Arranger::insert_crossings() {
   constexpr int kMostRounds = 100;
+  constexpr int kRoundsWithMerging =
+      20;  // bending edges to vertices near by may go round in circles
   for (int round = 0; round < kMostRounds; ++round) {
     if (!insert_crossings_once()) return;
+    if (round == kRoundsWithMerging) near_ = 0;
   }
   throw InvalidInput(
       "feature lines: they cross each other too often within a quarter edge; "
@@ -355,6 +358,7 @@ LineArrangement Arranger::result() {
                                    " edges of lines lie on the border of the domain, ",
                                    "where they mean nothing, and were left out."));
   }
+  result.rings = std::move(rings_);
   // Merging has left vertices behind that no edge uses.
   std::vector<int> number(vertices_.size(), -1);
   for (auto& edge : result.edges) {

@@ -17,7 +17,8 @@ struct LineArrangement {
     bool body_left = false, body_right = false;  ///< of feature lines, walking from a to b
   };
   std::vector<Point<2>> vertices;
-  std::vector<Edge> edges;  ///< each pair of vertices at most once
+  std::vector<Edge> edges;      ///< each pair of vertices at most once
+  std::vector<Polyline> rings;  ///< the border as divided, the domain on the left
   std::vector<std::string> notes, warnings;
 };
 

@@ -240,7 +240,7 @@ DomainMesh DomainMesher::mesh(const MeshOptions& options) const {
     segments.push_back({a, b, (b - a).norm()});
     input.edges.push_back({edge.a, edge.b});
   }
-  for (const auto& ring : region_.rings()) {
+  for (const auto& ring : arrangement.rings) {
     if (signed_area(ring) < 0) input.holes.push_back(point_inside(ring));
   }
   const SizeField field = size_field(options, std::move(segments));

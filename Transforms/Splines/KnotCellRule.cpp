@@ -80,12 +80,12 @@ TriangleRule make_rule(int degree) {
   return rule;
 }
 
-CellRule three_points(const PolygonMoments& moments) {
+void set_three_points(const PolygonMoments& moments, CellRule& rule) {
   const Eigen::LLT<Matrix<2>> factor(moments.covariance);
-  CellRule rule;
-  if (factor.info() !=
-      Eigen::Success) {  // a sliver without width: its line's rule would do as well
-    return {{moments.centroid}, {moments.area}};
+  if (factor.info() != Eigen::Success) {  // a sliver without width
+    rule.points.assign(1, moments.centroid);
+    rule.weights.assign(1, moments.area);
+    return;
   }
   const Matrix<2> root = std::sqrt(2.0) * Matrix<2>(factor.matrixL());
   const double half_root = std::sqrt(3.0) / 2.0;
@@ -94,7 +94,6 @@ CellRule three_points(const PolygonMoments& moments) {
     rule.points.push_back(moments.centroid + root * e);
     rule.weights.push_back(moments.area / 3.0);
   }
-  return rule;
 }
 
 }  // namespace
@@ -112,14 +111,20 @@ const TriangleRule& triangle_rule(int degree) {
   return rules[degree];
 }
 
-CellRule cell_rule(std::span<const Point<2>> polygon, int degree) {
+void set_cell_rule(std::span<const Point<2>> polygon, int degree, CellRule& rule) {
+  rule.points.clear();
+  rule.weights.clear();
   const TriangleRule& triangle = triangle_rule(degree);
   if (degree <= 2 && polygon.size() > 3) {
     const PolygonMoments moments = polygon_moments(polygon);
-    if (degree == 2) return three_points(moments);
-    return {{moments.centroid}, {moments.area}};
+    if (degree == 2) {
+      set_three_points(moments, rule);
+    } else {
+      rule.points.push_back(moments.centroid);
+      rule.weights.push_back(moments.area);
+    }
+    return;
   }
-  CellRule rule;
   for (std::size_t i = 2; i < polygon.size(); ++i) {
     const Point<2>&a = polygon[0], &b = polygon[i - 1], &c = polygon[i];
     const double area = 0.5 * cross(b - a, c - a);
@@ -130,6 +135,11 @@ CellRule cell_rule(std::span<const Point<2>> polygon, int degree) {
       rule.weights.push_back(area * triangle.weights[k]);
     }
   }
+}
+
+CellRule cell_rule(std::span<const Point<2>> polygon, int degree) {
+  CellRule rule;
+  set_cell_rule(polygon, degree, rule);
   return rule;
 }
 

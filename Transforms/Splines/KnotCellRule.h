@@ -21,6 +21,8 @@ struct CellRule {
 /// ellipse lies inside every convex body: Kannan, Lovasz, Simonovits, 1995). Higher degrees fan the
 /// polygon into triangles.
 CellRule cell_rule(std::span<const Point<2>> polygon, int degree);
+/// The same into an existing rule, whose memory it uses again.
+void set_cell_rule(std::span<const Point<2>> polygon, int degree, CellRule& rule);
 
 /// Barycentric points and weights (sum 1) of a rule for triangles.
 struct TriangleRule {

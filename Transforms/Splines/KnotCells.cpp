@@ -113,6 +113,8 @@ void KnotCells::cut(std::vector<KnotPolygon>& polygons, const Segment& segment) 
         part_inside(polygons[i], segment.start, segment.direction, 0.0, segment.length, tie_);
     if (inside.upper - inside.lower <= tie_) continue;
     KnotPolygon left, right;
+    left.reserve(polygons[i].size() + 1);
+    right.reserve(polygons[i].size() + 1);
     split(polygons[i], heights, tie_, left, right);
     polygons[i] = std::move(left);
     polygons.push_back(std::move(right));

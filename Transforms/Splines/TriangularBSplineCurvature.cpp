@@ -133,6 +133,11 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
       row += group.stride;
     }
   });
+  places_.resize(basis.num_control_points());
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
+    const auto& points = groups_[g].control_points;
+    for (int k = 0; k < static_cast<int>(points.size()); ++k) places_[points[k]].push_back({g, k});
+  }
 }
 
 void TriangularBSplineCurvature::add(const CurvatureBlocks<2>& blocks, double scale,
@@ -147,27 +152,36 @@ void TriangularBSplineCurvature::add(const CurvatureBlocks<2>& blocks, double sc
            static_cast<int>(size), group.stride, blocks.sums[0].data(), blocks.sums[1].data(),
            blocks.sums[2].data(), sums[g].data());
   });
-  for (std::size_t g = 0; g < groups_.size(); ++g) scatter(groups_[g], sums[g], scale, hessian);
+  constexpr int kRowsAtOnce = 64;
+  const int rows = static_cast<int>(places_.size());
+  parallel_for((rows + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t part) {
+    const int first = static_cast<int>(part) * kRowsAtOnce;
+    for (int i = first; i < std::min(rows, first + kRowsAtOnce); ++i) {
+      add_row(i, sums, scale, hessian);
+    }
+  });
 }
 
-void TriangularBSplineCurvature::scatter(const Group& group, const std::vector<float>& sums,
-                                         double scale, BlockHessian<2>& hessian) const {
+// Each row of the Hessian belongs to one call: its groups are added in their order.
+void TriangularBSplineCurvature::add_row(int control_point,
+                                         const std::vector<std::vector<float>>& sums, double scale,
+                                         BlockHessian<2>& hessian) const {
   const HessianPattern& pattern = hessian.pattern();
-  for (std::size_t i = 0; i < group.control_points.size(); ++i) {
-    const int row = group.control_points[i];
-    const float* s = &sums[3 * i * group.stride];
-    int slot = pattern.row_start()[row];
-    const int end = pattern.row_start()[row + 1];
-    for (std::size_t k = 0; k <= i; ++k) {
+  const auto row_end = pattern.columns().begin() + pattern.row_start()[control_point + 1];
+  for (const auto& [g, position] : places_[control_point]) {
+    const Group& group = groups_[g];
+    const float* s = &sums[g][static_cast<std::size_t>(3) * position * group.stride];
+    auto column = pattern.columns().begin() + pattern.row_start()[control_point];
+    for (int k = 0; k <= position; ++k) {
       const double xx = s[k], xy = s[group.stride + k], yy = s[2 * group.stride + k];
       if (xx == 0.0 && xy == 0.0 && yy == 0.0) continue;
-      const int column = group.control_points[k];
-      while (slot < end && pattern.columns()[slot] < column) ++slot;
-      if (slot == end || pattern.columns()[slot] != column) {
-        pattern.slot(row, column);  // explains what is missing
+      const int other = group.control_points[k];
+      while (column != row_end && *column < other) ++column;
+      if (column == row_end || *column != other) {
+        pattern.slot(control_point, other);  // explains what is missing
         continue;
       }
-      Matrix<2>& block = hessian.block(slot);
+      Matrix<2>& block = hessian.block(static_cast<int>(column - pattern.columns().begin()));
       block(0, 0) += scale * xx;
       block(0, 1) += scale * xy;
       block(1, 0) += scale * xy;

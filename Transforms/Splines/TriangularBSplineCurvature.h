@@ -41,10 +41,14 @@ class TriangularBSplineCurvature {
     std::vector<int> blocks;
     std::vector<float> weights;  // stride per block
   };
-  void scatter(const Group& group, const std::vector<float>& sums, double scale,
+  struct Place {  // of a control point in a group
+    int group, position;
+  };
+  void add_row(int control_point, const std::vector<std::vector<float>>& sums, double scale,
                BlockHessian<2>& hessian) const;
 
   std::vector<Group> groups_;
+  std::vector<std::vector<Place>> places_;  // per control point, by group
 };
 
 }  // namespace crease

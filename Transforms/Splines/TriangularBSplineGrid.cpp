@@ -16,11 +16,15 @@ struct GridCoefficients final : BoundGrid<2>::Coefficients {
 
 // Sums of the triangles and control points that the rows have met, each with a slot (-1: none yet).
 struct GridAccumulator final : BoundGrid<2>::Accumulator {
+  struct alignas(64) PointSums {  // one line of the cache
+    float x[8] = {}, y[8] = {};   // partial sums
+  };
+
   const RowBand* band = nullptr;  // met last
   std::vector<int> patch_slot, point_slot;
   std::vector<int> patches, points;  // the slots' owners
   std::vector<double> moments;       // per slot, power of Y and core_stride
-  std::vector<float> sums;           // per slot 8 partial sums of x, 8 of y
+  std::vector<PointSums> sums;       // per slot
 
   static void add_slots(const std::vector<int>& met, std::vector<int>& slot,
                         std::vector<int>& owners) {
@@ -158,23 +162,25 @@ void TriangularBSplineGrid::add_row(Accumulator& sums, std::int64_t row,
     GridAccumulator::add_slots(band.triangles, s.patch_slot, s.patches);
     GridAccumulator::add_slots(band.strip_points, s.point_slot, s.points);
     s.moments.resize(s.patches.size() * per_triangle(), 0.0);
-    s.sums.resize(s.points.size() * 16, 0.0f);
+    s.sums.resize(s.points.size());
   }
   const auto kernel = avx2_ ? avx2::grid_adjoint_row : baseline::grid_adjoint_row;
   kernel(kernel_row(row), force[0], force[1], s.patch_slot.data(), s.moments.data(),
-         s.point_slot.data(), s.sums.data());
+         s.point_slot.data(), s.sums.empty() ? nullptr : s.sums[0].x);
 }
 
 void TriangularBSplineGrid::finish(std::span<const std::unique_ptr<Accumulator>> sums,
                                    Eigen::Ref<ControlPoints<2>> gradient) const {
   std::vector<double> moments(patches_.size() * per_triangle(), 0.0);
+  Eigen::Array<double, 8, Eigen::Dynamic> lanes_x =
+      Eigen::Array<double, 8, Eigen::Dynamic>::Zero(8, num_control_points_);
+  Eigen::Array<double, 8, Eigen::Dynamic> lanes_y = lanes_x;
+  using Lanes = Eigen::Map<const Eigen::Array<float, 8, 1>>;
   for (const auto& part : sums) {
     const auto& s = static_cast<const GridAccumulator&>(*part);
     for (std::size_t i = 0; i < s.points.size(); ++i) {
-      for (int a = 0; a < 2; ++a) {
-        const Eigen::Map<const Eigen::Array<float, 8, 1>> lanes(&s.sums[16 * i + 8 * a]);
-        gradient(a, s.points[i]) += lanes.cast<double>().sum();
-      }
+      lanes_x.col(s.points[i]) += Lanes(s.sums[i].x).cast<double>();
+      lanes_y.col(s.points[i]) += Lanes(s.sums[i].y).cast<double>();
     }
     for (std::size_t i = 0; i < s.patches.size(); ++i) {
       double* target = &moments[static_cast<std::size_t>(s.patches[i]) * per_triangle()];
@@ -182,6 +188,8 @@ void TriangularBSplineGrid::finish(std::span<const std::unique_ptr<Accumulator>>
       for (int k = 0; k < per_triangle(); ++k) target[k] += from[k];
     }
   }
+  gradient.row(0) += lanes_x.colwise().sum().matrix();
+  gradient.row(1) += lanes_y.colwise().sum().matrix();
   const int stride = core_stride(degree_);
   const int functions = num_multi_indices<2>(degree_);
   Eigen::MatrixXd by_monomial(functions, 2);

@@ -28,8 +28,9 @@ class TriangleElements {
   std::vector<QuadratureElement<2>> make(const std::vector<KnotCell>& cells, int degree) {
     std::vector<QuadratureElement<2>> elements;
     elements.reserve(cells.size());
+    CellRule rule;
     for (const KnotCell& cell : cells) {
-      const CellRule rule = cell_rule(cell.polygon, degree);
+      set_cell_rule(cell.polygon, degree, rule);
       start_element(cell, rule, elements);
       const int total = static_cast<int>(rule.points.size());
       for (int first = 0; first < total; first += kLanes) {

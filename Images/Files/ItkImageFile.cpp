@@ -11,12 +11,18 @@
 #include <nifti1_io.h>
 
 #include <algorithm>
+#include <cstdarg>
 #include <limits>
 #include <mutex>
 #include <new>
 
 #include "Core/Error.h"
 #include "Images/Files/FileBytes.h"
+
+// ITK may bring a TIFF library of its own, under these names and without a header.
+using TiffMessageHandler = void (*)(const char*, const char*, va_list);
+extern "C" __attribute__((weak)) TiffMessageHandler itk_TIFFSetWarningHandler(TiffMessageHandler);
+extern "C" __attribute__((weak)) TiffMessageHandler itk_TIFFSetErrorHandler(TiffMessageHandler);
 
 namespace crease {
 namespace {
@@ -30,6 +36,8 @@ void silence_libraries() {
     gdcm::Trace::WarningOff();
     gdcm::Trace::ErrorOff();
     nifti_set_debug_level(0);
+    if (itk_TIFFSetWarningHandler != nullptr) itk_TIFFSetWarningHandler(nullptr);
+    if (itk_TIFFSetErrorHandler != nullptr) itk_TIFFSetErrorHandler(nullptr);
   });
 }
 

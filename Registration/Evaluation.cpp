@@ -229,15 +229,15 @@ struct Products {
 template <int Dim>
 MatchEvaluation evaluate_match(const EvaluationInput<Dim>& input, const Mask<Dim>& counted) {
   const Raster<Dim>& raster = counted.raster();
-  const float kMissing = std::numeric_limits<float>::quiet_NaN();
+  const float missing = std::numeric_limits<float>::quiet_NaN();
   const auto identity = PointMap<Dim>([](const Point<Dim>& x) { return x; });
   const auto moving = make_interpolator(*input.moving);
   const auto fixed = same_raster(input.fixed->raster(), raster)
                          ? Image<float, Dim>(raster, input.fixed->values())
                          : resample(*make_interpolator(*input.fixed, InterpolationKind::kLinear),
-                                    raster, identity, kMissing);
-  const auto before = resample(*moving, raster, identity, kMissing);
-  const auto after = resample(*moving, raster, row_map(*input.displacement), kMissing);
+                                    raster, identity, missing);
+  const auto before = resample(*moving, raster, identity, missing);
+  const auto after = resample(*moving, raster, row_map(*input.displacement), missing);
   Products products_before, products_after;
   for (std::int64_t i = 0; i < raster.num_samples(); ++i) {
     const double f = fixed.values()[i], b = before.values()[i], a = after.values()[i];

@@ -1,7 +1,6 @@
 #include "Optimizers/QuadraticMinimum.h"
 
 #include "Core/Error.h"
-#include "Optimizers/SparseCholesky.h"
 
 namespace crease {
 namespace {
@@ -16,33 +15,43 @@ Eigen::VectorXd stack(const RowMatrix& rows) {
 
 }  // namespace
 
-Eigen::VectorXd minimize_quadratic(const Eigen::SparseMatrix<double>& A,
-                                   const Eigen::Ref<const Eigen::VectorXd>& b,
-                                   const NullSpace& null_space) {
+QuadraticMinimizer::QuadraticMinimizer(Eigen::SparseMatrix<double> A, const NullSpace& null_space)
+    : null_space_(null_space), scalar_(A.rows() == null_space.num_rows()) {
   const Eigen::Index k = null_space.num_columns();
-  const bool scalar = A.rows() == null_space.num_rows();
-  if (b.size() != null_space.full_size() || (!scalar && A.rows() != null_space.full_size())) {
+  if (!scalar_ && A.rows() != null_space.full_size()) {
     throw InvalidInput(message("minimum of a quadratic function: the null space has ",
                                null_space.num_rows(), " x ", k, " unknowns, the matrix ", A.rows(),
-                               " rows and the linear term ", b.size(), " numbers."));
+                               " rows."));
   }
-  Eigen::SparseMatrix<double> reduced;
-  scalar ? null_space.reduce_scalar(A, reduced) : null_space.reduce_hessian(A, reduced);
   const Eigen::VectorXd offset = stack(null_space.offset());
-  const Eigen::VectorXd gradient =
-      scalar ? stack(A.selfadjointView<Eigen::Lower>() * as_rows(offset, k))
-             : Eigen::VectorXd(A.selfadjointView<Eigen::Lower>() * offset);
-  const Eigen::VectorXd rhs = null_space.apply_transpose(b - gradient);
-  if (rhs.size() == 0) return offset;
-
-  SparseCholesky cholesky;
-  if (!cholesky.factor(reduced)) {
+  pull_of_offset_ = scalar_ ? stack(A.selfadjointView<Eigen::Lower>() * as_rows(offset, k))
+                            : Eigen::VectorXd(A.selfadjointView<Eigen::Lower>() * offset);
+  if (null_space.reduced_size() == 0) return;
+  Eigen::SparseMatrix<double> reduced;
+  scalar_ ? null_space.reduce_scalar(A, reduced) : null_space.reduce_hessian(A, reduced);
+  if (!factor_.factor(reduced)) {
     throw SolverError(
         message("minimum of a quadratic function: the matrix is not positive definite on the ",
                 reduced.rows(), " free unknowns; add a term that sees every control point."));
   }
-  if (!scalar) return null_space.expand(cholesky.solve(rhs));
-  return null_space.expand(stack(cholesky.solve_columns(as_rows(rhs, k))));
+}
+
+Eigen::VectorXd QuadraticMinimizer::minimum(const Eigen::Ref<const Eigen::VectorXd>& b) const {
+  if (b.size() != null_space_.full_size()) {
+    throw InvalidInput(message("minimum of a quadratic function: a linear term of ", b.size(),
+                               " numbers for ", null_space_.full_size(), " unknowns."));
+  }
+  const Eigen::VectorXd rhs = null_space_.apply_transpose(b - pull_of_offset_);
+  if (rhs.size() == 0) return stack(null_space_.offset());
+  if (!scalar_) return null_space_.expand(factor_.solve(rhs));
+  return null_space_.expand(
+      stack(factor_.solve_columns(as_rows(rhs, null_space_.num_columns()))));
+}
+
+Eigen::VectorXd minimize_quadratic(const Eigen::SparseMatrix<double>& A,
+                                   const Eigen::Ref<const Eigen::VectorXd>& b,
+                                   const NullSpace& null_space) {
+  return QuadraticMinimizer(A, null_space).minimum(b);
 }
 
 }  // namespace crease

@@ -14,7 +14,7 @@ double edge_length_near_lines(const RegionOfInterest& region, const CreasedDomai
   if (options.edge_length_near_lines > 0) return options.edge_length_near_lines;
   const double elsewhere =
       options.edge_length > 0 ? options.edge_length : default_edge_length(region.bounds());
-  return elsewhere / 4;
+  return elsewhere / 2;
 }
 
 void append(std::vector<std::string>& texts, const std::vector<std::string>& more) {

@@ -20,7 +20,9 @@ struct CreasedDomainOptions {
   int smoothness = -1;  ///< continuous derivatives away from creases; -1: degree - 1
   bool creases = true;  ///< false: lines stay edges of the mesh, the spline is smooth across them
   double edge_length = 0;  ///< away from lines; default a twelfth of the region's longer side
-  double edge_length_near_lines = 0;  ///< default a quarter of edge_length
+  /// Default half of edge_length: on phantoms of rigid bodies a quarter costs 40 to 90 % more triangles
+  /// and changes no error by more than a tenth.
+  double edge_length_near_lines = 0;
   double gradation = 0.8;             ///< growth of the edge length per mm of distance to a line
   /// mm that edges may run off curved lines; default a pixel of the label image, else 1/20 of the edges
   /// near lines. For creases a pixel will do: half of it costs a third more triangles.

@@ -11,12 +11,13 @@
 #include "Optimizers/GaussNewton.h"
 #include "Registration/OpticalFlow.h"
 #include "Registration/SamplesInside.h"
-#include "Transforms/Energies/DirichletEnergy.h"
+#include "Registration/StartingPoint.h"
 #include "Transforms/Energies/LandmarkEnergy.h"
 
 namespace crease {
 namespace {
 
+constexpr int kTrialIterations = 3;       // that decide which start is followed
 constexpr int kLargestFlowImage = 1200;  // pixels: larger images give their flow at half the size
 
 /// Samples that lie in the domain of the bound grid keep their weight.
@@ -37,19 +38,6 @@ Image<float, Dim> scaled(const Image<float, Dim>& image, double factor) {
   Image<float, Dim> result = image;
   for (float& v : result.values()) v *= static_cast<float>(factor);
   return result;
-}
-
-/// For costs that are quadratic, or nearly so: the block curvature of an image term is not exact.
-GaussNewton quadratic_solver(double relative_decrease) {
-  OptimizerOptions stopping;
-  stopping.relative_decrease = relative_decrease;
-  stopping.small_decreases = 1;
-  stopping.max_iterations = 4;
-  GaussNewtonOptions options;
-  options.linear_solver.kind = LinearSolver::kScalarPreconditionedCg;
-  options.linear_solver.cg_tolerance = 1e-6;
-  options.initial_damping = 1e-9;
-  return GaussNewton(stopping, options);
 }
 
 }  // namespace
@@ -77,7 +65,9 @@ RegistrationResult<Dim> RegistrationRun<Dim>::execute() {
   find_initial_map();
   add_time("alignment");
   make_constraints();
+  add_time("constraints");
   collect_energies();
+  add_time("energies");
   make_levels();
   add_time("binding");
   optimise();
@@ -123,8 +113,7 @@ void RegistrationRun<Dim>::make_constraints() {
   null_space_ = constraints.null_space;
   for (const auto& note : constraints.notes) result_.warnings.push_back(note);
   result_.free_parameters = null_space_->reduced_size();
-  pattern_ = std::make_shared<HessianPattern>(parts_.basis->num_control_points(),
-                                              parts_.basis->couplings());
+  pattern_ = parts_.basis->pattern();
 }
 
 template <int Dim>
@@ -207,33 +196,8 @@ std::unique_ptr<RegistrationObjective<Dim>> RegistrationRun<Dim>::objective(
                                                       std::move(energies));
 }
 
-/// Bending times the weight, with a little stretching that makes the minimum unique where nothing bends
-/// (inside bodies, and for maps that are affine).
-template <int Dim>
-std::vector<WeightedEnergy<Dim>> RegistrationRun<Dim>::smoothing(double weight) {
-  const double h = parts_.basis->mean_edge_length();
-  if (stretching_ == nullptr) {
-    stretching_ = std::make_shared<DirichletEnergy<Dim>>(*parts_.basis, 1);
-  }
-  std::vector<WeightedEnergy<Dim>> energies = {
-      {"stretching", 1e-3 * weight / (h * h), stretching_}};
-  for (const auto& energy : energies_) {
-    if (energy.name == "bending") energies.push_back({energy.name, weight, energy.energy});
-  }
-  return energies;
-}
-
-/// The smoothest displacement that meets the landmarks. Source: registration in the null space, the start
-/// after elimination.
-template <int Dim>
-typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::smoothest_start() {
-  RegistrationObjective<Dim> quadratic(pattern_, nullptr, 0, smoothing(1));
-  return quadratic_solver(1e-9)
-      .minimize(quadratic, Phi::Zero(null_space_->full_size()), null_space_.get())
-      .x;
-}
-
-/// Weighted least squares to a dense optical flow, with bending, within the constraints.
+/// Weighted least squares to a dense optical flow, smooth and rigid as the energies ask for, within the
+/// constraints.
 template <int Dim>
 typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Phi& near) {
   if constexpr (Dim == 2) {
@@ -246,11 +210,13 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Ph
         optical_flow(images_[l].fixed, images_[l].weights, *images_[l].moving, affine_);
     auto target =
         std::make_shared<TargetDisplacement<2>>(flow.raster, flow.displacement, flow.weights);
-    auto fit = std::make_shared<ImageTerm<2>>(levels_[l].grid, target, affine_);
+    ImageTerm<2> fit(levels_[l].grid, target, affine_);
     const double pixel = fixed_.raster().spacing.minCoeff();
-    RegistrationObjective<2> quadratic(pattern_, fit, 1, smoothing(10 * std::pow(pixel, 4)));
-    const GaussNewton solver = quadratic_solver(1e-2);
-    return solver.minimize(quadratic, near, null_space_.get()).x;
+    auto energies = energies_;
+    for (auto& energy : energies) {
+      energy.weight = energy.name == "bending" ? 10 * std::pow(pixel, 4) : 100 * pixel * pixel;
+    }
+    return StartingPoint<2>(pattern_, *null_space_, energies).fitted_to(fit, near);
   }
   return near;
 }
@@ -258,8 +224,10 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Ph
 template <int Dim>
 std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
   std::vector<Phi> candidates;
-  candidates.push_back(null_space_->rank() > 0 ? smoothest_start()
-                                               : Phi::Zero(null_space_->full_size()));
+  const bool pulled = null_space_->rank() > 0 || energies_.size() > parts_.energies.size();
+  candidates.push_back(
+      pulled ? StartingPoint<Dim>(pattern_, *null_space_, energies_).smoothest()
+             : Phi::Zero(null_space_->full_size()));
   if (Dim == 2 && parts_.schedule.optical_flow && !images_.empty()) {
     candidates.push_back(fitted_to_flow(candidates.front()));
   }
@@ -267,21 +235,44 @@ std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
 }
 
 template <int Dim>
-std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t level) const {
+std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t level,
+                                                                   int max_iterations) const {
   if (parts_.optimizer != nullptr) return parts_.optimizer;
   OptimizerOptions stopping;
-  stopping.max_iterations = 100;
+  stopping.max_iterations = max_iterations;
   if (parts_.has_images()) {
     const bool finest = level + 1 == levels_.size();
-    stopping.relative_decrease = 1e-3;
+    stopping.relative_decrease = finest ? 1e-3 : 3e-3;
     stopping.small_decreases = 1;
     stopping.step_length = finest ? 0.02 : 0.1;
   }
-  return std::make_shared<GaussNewton>(stopping);
+  GaussNewtonOptions options;
+  // A scalar factor does not see how rigidity couples coordinates.
+  const bool coupled = std::ranges::any_of(
+      energies_, [](const auto& energy) { return energy.energy->couples_coordinates(); });
+  if (coupled) options.linear_solver.kind = LinearSolver::kPreconditionedCg;
+  return std::make_shared<GaussNewton>(stopping, options);
+}
+
+/// The start from which a few iterations lead to the lowest cost, with these iterations done.
+template <int Dim>
+typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::better_start(
+    std::size_t level, const std::vector<Phi>& candidates) {
+  if (candidates.size() == 1) return candidates.front();
+  Phi best;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Phi& start : candidates) {
+    OptimizerResult found = optimise_level(level, start, optimizer_of(level, kTrialIterations));
+    if (found.value >= lowest) continue;
+    lowest = found.value;
+    best = std::move(found.x);
+  }
+  return best;
 }
 
 template <int Dim>
-OptimizerResult RegistrationRun<Dim>::optimise_level(std::size_t level, const Phi& start) {
+OptimizerResult RegistrationRun<Dim>::optimise_level(
+    std::size_t level, const Phi& start, const std::shared_ptr<const Optimizer>& optimizer) {
   const auto cost = objective(levels_[level]);
   const double value = cost->evaluate(start, nullptr, nullptr);
   if (value <= levels_[level].noise_floor) {
@@ -292,7 +283,6 @@ OptimizerResult RegistrationRun<Dim>::optimise_level(std::size_t level, const Ph
     rest.reason_text = "the images already match to rounding";
     return rest;
   }
-  const auto optimizer = optimizer_of(level);
   return optimizer->minimize(*cost, start, null_space_.get(), [&](const IterationRecord& record) {
     tell("level", level, record.iteration, record.value);
     return !cancelled_;
@@ -311,12 +301,8 @@ void RegistrationRun<Dim>::optimise() {
     // A start that throws samples out of the moving image must not profit from it: A alone decides first.
     choose_samples(l, l == 0 ? Phi(Phi::Zero(null_space_->full_size())) : candidates.front());
     const auto cost = objective(levels_[l]);
-    OptimizerResult best;
-    best.value = std::numeric_limits<double>::infinity();
-    for (const Phi& start : candidates) {
-      OptimizerResult found = optimise_level(l, start);
-      if (found.value < best.value) best = std::move(found);
-    }
+    const Phi start = better_start(l, candidates);
+    OptimizerResult best = optimise_level(l, start, optimizer_of(l));
     cost->evaluate(candidates.front(), nullptr, nullptr);
     level.terms_before = cost->terms();
     cost->evaluate(best.x, nullptr, nullptr);

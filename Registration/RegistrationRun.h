@@ -35,15 +35,15 @@ class RegistrationRun {
   void choose_samples(std::size_t level, const Phi& start);
   void collect_energies();
   std::vector<Phi> starts();
-  std::vector<WeightedEnergy<Dim>> smoothing(double weight);
-  Phi smoothest_start();
   Phi fitted_to_flow(const Phi& near);
   void optimise();
-  OptimizerResult optimise_level(std::size_t level, const Phi& start);
+  Phi better_start(std::size_t level, const std::vector<Phi>& candidates);
+  OptimizerResult optimise_level(std::size_t level, const Phi& start,
+                                 const std::shared_ptr<const Optimizer>& optimizer);
   void report(const Phi& phi);
 
   std::unique_ptr<RegistrationObjective<Dim>> objective(const Level& level) const;
-  std::shared_ptr<const Optimizer> optimizer_of(std::size_t level) const;
+  std::shared_ptr<const Optimizer> optimizer_of(std::size_t level, int max_iterations = 100) const;
   void tell(const std::string& stage, std::size_t level, int iteration, double energy);
   void add_time(const std::string& stage);
 
@@ -57,7 +57,6 @@ class RegistrationRun {
   std::shared_ptr<const NullSpace> null_space_;
   std::shared_ptr<const HessianPattern> pattern_;
   std::vector<WeightedEnergy<Dim>> energies_;
-  std::shared_ptr<const Energy<Dim>> stretching_;  // made when needed
   std::vector<ImageLevel<Dim>> images_;
   std::vector<Level> levels_;
   RegistrationResult<Dim> result_;

@@ -40,7 +40,7 @@ MeshOptions completed(const RegionOfInterest& region, MeshOptions options) {
     throw InvalidInput(message("mesh: gradation = ", options.gradation, " must be positive."));
   }
   if (options.edge_length == 0) options.edge_length = region.bounds().size().maxCoeff() / 12;
-  if (options.edge_length_near_lines == 0) options.edge_length_near_lines = options.edge_length / 4;
+  if (options.edge_length_near_lines == 0) options.edge_length_near_lines = options.edge_length / 2;
   if (options.edge_length_in_bodies == 0) options.edge_length_in_bodies = options.edge_length;
   return options;
 }

@@ -11,7 +11,7 @@ namespace crease {
 /// Edge lengths are mean lengths wanted, mm; 0 asks for the default.
 struct MeshOptions {
   double edge_length = 0;             ///< away from lines; default a twelfth of the longer side
-  double edge_length_near_lines = 0;  ///< along feature lines; default a quarter of edge_length
+  double edge_length_near_lines = 0;  ///< along feature lines; default half of edge_length
   double edge_length_in_bodies =
       0;                       ///< inside bodies, away from their outline; default edge_length
   double gradation = 0.4;      ///< growth of the edge length per mm of distance to a line

@@ -33,7 +33,7 @@ Eigen::SparseMatrix<double> bending_matrix(const SplineBasis<Dim>& basis,
         if (element.in_band) return;
         const auto root = root_weights(element, weights, range);
         if (root.isZero(0)) return;
-        const Eigen::Index k = element.values.rows(), q = root.size();
+        const Eigen::Index k = std::ssize(element.control_points), q = root.size();
         factor.resize(k, kNumSecondDerivatives<Dim> * q);
         for (int a = 0, s = 0; a < Dim; ++a) {
           for (int b = a; b < Dim; ++b, ++s) {
@@ -41,7 +41,8 @@ Eigen::SparseMatrix<double> bending_matrix(const SplineBasis<Dim>& basis,
             factor.middleCols(s * q, q) = element.hessians[s] * (both * root).asDiagonal();
           }
         }
-      });
+      },
+      [&](int region, int) { return !weights.is_constant(region, 1.0); });
   range.check("BendingEnergy");
   return matrix;
 }

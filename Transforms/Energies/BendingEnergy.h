@@ -28,6 +28,10 @@ class BendingEnergy final : public Energy<Dim> {
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const override {
     return form_.evaluate(phi, scale, gradient, hessian);
   }
+  void add_stiffness(double scale, const HessianPattern& pattern,
+                     std::span<double> stiffness) const override {
+    form_.add_stiffness(scale, pattern, stiffness);
+  }
 
  private:
   QuadraticForm<Dim> form_;

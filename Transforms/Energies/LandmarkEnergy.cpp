@@ -55,6 +55,33 @@ double LandmarkEnergy<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>&
   return energy;
 }
 
+template <int Dim>
+void LandmarkEnergy<Dim>::add_stiffness(double scale, const HessianPattern& pattern,
+                                        std::span<double> stiffness) const {
+  for (const Landmark& landmark : landmarks_) {
+    const auto& numbers = landmark.basis.control_points;
+    const auto& values = landmark.basis.values;
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      for (std::size_t m = 0; m <= n; ++m) {
+        stiffness[pattern.slot(numbers[n], numbers[m])] +=
+            scale * landmark.weight * values[n] * values[m];
+      }
+    }
+  }
+}
+
+template <int Dim>
+bool LandmarkEnergy<Dim>::add_pull(const Eigen::Ref<const ControlPoints<Dim>>&, double scale,
+                                   ControlPoints<Dim>& pull) const {
+  for (const Landmark& landmark : landmarks_) {
+    const auto& numbers = landmark.basis.control_points;
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      pull.col(numbers[n]) += scale * landmark.weight * landmark.basis.values[n] * landmark.wanted;
+    }
+  }
+  return false;
+}
+
 template class LandmarkEnergy<2>;
 template class LandmarkEnergy<3>;
 

@@ -22,6 +22,10 @@ class LandmarkEnergy final : public Energy<Dim> {
 
   double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const override;
+  void add_stiffness(double scale, const HessianPattern& pattern,
+                     std::span<double> stiffness) const override;
+  bool add_pull(const Eigen::Ref<const ControlPoints<Dim>>& phi0, double scale,
+                ControlPoints<Dim>& pull) const override;
 
  private:
   struct Landmark {

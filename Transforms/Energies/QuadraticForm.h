@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
 
 #include "Transforms/BlockHessian.h"
 
@@ -17,6 +18,9 @@ class QuadraticForm {
   /// As Energy::evaluate.
   double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const;
+  /// As Energy::add_stiffness.
+  void add_stiffness(double scale, const HessianPattern& pattern,
+                     std::span<double> stiffness) const;
 
  private:
   Eigen::SparseMatrix<double> matrix_;

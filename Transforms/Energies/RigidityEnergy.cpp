@@ -7,6 +7,9 @@
 namespace crease {
 namespace {
 
+/// Root mean square of |E| up to which a body counts as nearly rigid.
+constexpr double kRigidStrain = 0.1;
+
 /// The weights at the element's points, null: 1.
 template <int Dim>
 Eigen::VectorXd weights_at_points(const QuadratureElement<Dim>& element,
@@ -95,9 +98,13 @@ RigidityEnergy<Dim>::RigidityEnergy(const SplineBasis<Dim>& basis, const WeightF
   const int degree =
       options.quadrature_degree >= 0 ? options.quadrature_degree : basis.product_degree(4, 1);
   WeightRange range;
-  visit_quadrature<Dim>(basis, degree, 1, options.wanted,
+  const auto wanted = [&](int region, int patch) {
+    return (!options.wanted || options.wanted(region, patch)) && !weights.is_constant(region, 0.0);
+  };
+  visit_quadrature<Dim>(basis, degree, 1, wanted,
                         [&](auto& elements) { add_cells(elements, weights, range); });
   range.check("RigidityEnergy");
+  make_bodies();
 }
 
 template <int Dim>
@@ -107,6 +114,7 @@ void RigidityEnergy<Dim>::add_cells(const std::vector<QuadratureElement<Dim>>& e
   for (const PatchRange& group : group_by_patch(elements)) {
     Patch patch;
     patch.control_points = group.control_points;
+    patch.region = elements[group.begin].region;
     for (std::size_t e = group.begin; e < group.end; ++e) {
       const auto& element = elements[e];
       if (element.in_two_sided_band) continue;
@@ -205,34 +213,61 @@ double RigidityEnergy<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>&
     throw InvalidInput(message("RigidityEnergy: ", phi.cols(), " control points given, ",
                                num_control_points_, " expected."));
   }
+  std::vector<PatchSums> sums(patches_.size());
+  parallel_for(std::ssize(sums), [&](std::int64_t p) {
+    sums[p] = evaluate_patch(patches_[p], phi, gradient != nullptr, false);
+  });
   double energy = 0;
-  constexpr std::size_t kChunk = 128;  // patches whose sums are kept before they are added in order
-  for (std::size_t begin = 0; begin < patches_.size(); begin += kChunk) {
-    std::vector<PatchSums> sums(std::min(kChunk, patches_.size() - begin));
-    parallel_for(std::ssize(sums), [&](std::int64_t p) {
-      sums[p] = evaluate_patch(patches_[begin + p], phi, gradient != nullptr, hessian != nullptr);
-    });
-    for (std::size_t p = 0; p < sums.size(); ++p) {
-      const auto& numbers = patches_[begin + p].control_points;
-      energy += sums[p].energy;
-      if (gradient) {
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-          gradient->col(numbers[i]) += scale * sums[p].gradient.col(i);
-        }
-      }
-      for (std::size_t i = 0; hessian && i < numbers.size(); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-          // Functions of one patch that share no cell do not couple.
-          const Matrix<Dim> block = sums[p].hessian.template block<Dim, Dim>(Dim * i, Dim * k);
-          if (!block.isZero(0)) hessian->add(numbers[i], numbers[k], scale * block);
-        }
-        const Matrix<Dim> lower = sums[p].hessian.template block<Dim, Dim>(Dim * i, Dim * i);
-        const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();
-        hessian->add(numbers[i], numbers[i], scale * diagonal);
-      }
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    energy += sums[p].energy;
+    const auto& numbers = patches_[p].control_points;
+    for (std::size_t i = 0; gradient && i < numbers.size(); ++i) {
+      gradient->col(numbers[i]) += scale * sums[p].gradient.col(i);
+    }
+  }
+  if (!hessian) return energy;
+  for (const Body& body : bodies_) {
+    double of_body = 0;
+    for (int p : body.patches) of_body += sums[p].energy;
+    if (!exact_hessian_ && 2 * of_body <= kRigidStrain * kRigidStrain * body.measure) {
+      add_rigid_hessian(body, rotation_of(body, phi), scale, *hessian);
+    } else {
+      add_strained_hessian(body, phi, scale, *hessian);
     }
   }
   return energy;
+}
+
+template <int Dim>
+void RigidityEnergy<Dim>::add_strained_hessian(const Body& body,
+                                               const Eigen::Ref<const ControlPoints<Dim>>& phi,
+                                               double scale, BlockHessian<Dim>& hessian) const {
+  constexpr std::size_t kChunk = 128;  // patches whose matrices are kept before they are added in order
+  for (std::size_t begin = 0; begin < body.patches.size(); begin += kChunk) {
+    std::vector<PatchSums> sums(std::min(kChunk, body.patches.size() - begin));
+    parallel_for(std::ssize(sums), [&](std::int64_t n) {
+      sums[n] = evaluate_patch(patches_[body.patches[begin + n]], phi, false, true);
+    });
+    for (std::size_t n = 0; n < sums.size(); ++n) {
+      add_patch_hessian(patches_[body.patches[begin + n]], sums[n], scale, hessian);
+    }
+  }
+}
+
+template <int Dim>
+void RigidityEnergy<Dim>::add_patch_hessian(const Patch& patch, const PatchSums& sums, double scale,
+                                            BlockHessian<Dim>& hessian) const {
+  const auto& numbers = patch.control_points;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      // Functions of one patch that share no cell do not couple.
+      const Matrix<Dim> block = sums.hessian.template block<Dim, Dim>(Dim * i, Dim * k);
+      if (!block.isZero(0)) hessian.add(numbers[i], numbers[k], scale * block);
+    }
+    const Matrix<Dim> lower = sums.hessian.template block<Dim, Dim>(Dim * i, Dim * i);
+    const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();
+    hessian.add(numbers[i], numbers[i], scale * diagonal);
+  }
 }
 
 template class RigidityEnergy<2>;

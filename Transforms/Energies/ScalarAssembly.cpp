@@ -116,12 +116,12 @@ void visit_quadrature(const SplineBasis<Dim>& basis, int polynomial_degree, int 
 }
 
 template <int Dim>
-Eigen::SparseMatrix<double> assemble_scalar_matrix(const SplineBasis<Dim>& basis,
-                                                   int polynomial_degree, int derivatives,
-                                                   const ElementFactor<Dim>& factor) {
-  const HessianPattern pattern(basis.num_control_points(), basis.couplings());
+Eigen::SparseMatrix<double> assemble_scalar_matrix(
+    const SplineBasis<Dim>& basis, int polynomial_degree, int derivatives,
+    const ElementFactor<Dim>& factor, const std::function<bool(int region, int patch)>& wanted) {
+  const HessianPattern& pattern = *basis.pattern();
   std::vector<double> values(static_cast<std::size_t>(pattern.num_entries()), 0.0);
-  visit_quadrature<Dim>(basis, polynomial_degree, derivatives, nullptr, [&](auto& elements) {
+  visit_quadrature<Dim>(basis, polynomial_degree, derivatives, wanted, [&](auto& elements) {
     Template first;
     factor(elements.front(), first.factor);
     first.square = outer_square(first.factor);
@@ -157,8 +157,9 @@ Eigen::SparseMatrix<double> mass_matrix(const SplineBasis<Dim>& basis) {
   template void visit_quadrature(                                                                \
       const SplineBasis<Dim>&, int, int, const std::function<bool(int, int)>&,                   \
       const std::function<void(std::vector<QuadratureElement<Dim>>&)>&);                         \
-  template Eigen::SparseMatrix<double> assemble_scalar_matrix(const SplineBasis<Dim>&, int, int, \
-                                                              const ElementFactor<Dim>&);        \
+  template Eigen::SparseMatrix<double> assemble_scalar_matrix(                                   \
+      const SplineBasis<Dim>&, int, int, const ElementFactor<Dim>&,                              \
+      const std::function<bool(int, int)>&);                                                     \
   template Eigen::SparseMatrix<double> mass_matrix(const SplineBasis<Dim>&);
 CREASE_INSTANTIATE(2)
 CREASE_INSTANTIATE(3)

@@ -33,10 +33,12 @@ using ElementFactor =
 
 /// K = sum over elements of A A^T: n x n, symmetric, both triangles, with the sparsity of the basis'
 /// couplings. Parallel, the same bits on any number of threads.
+/// @param wanted  patches that may add something; null: all.
 template <int Dim>
-Eigen::SparseMatrix<double> assemble_scalar_matrix(const SplineBasis<Dim>& basis,
-                                                   int polynomial_degree, int derivatives,
-                                                   const ElementFactor<Dim>& factor);
+Eigen::SparseMatrix<double> assemble_scalar_matrix(
+    const SplineBasis<Dim>& basis, int polynomial_degree, int derivatives,
+    const ElementFactor<Dim>& factor,
+    const std::function<bool(int region, int patch)>& wanted = nullptr);
 
 /// n x n mass matrix M_ik = integral of B_i B_k over the domain, exact.
 template <int Dim>

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <mutex>
 #include <string_view>
+#include <utility>
 
 #include "Core/Error.h"
 #include "Core/Point.h"
@@ -13,14 +16,38 @@
 namespace crease {
 
 /// How rigid the tissue at x (mm) is, 0 soft to 1 rigid; `region` is the body label of the patch that
-/// holds x, -1 for bases without regions. Called from several threads at once.
+/// holds x, -1 for bases without regions. Any callable w(x, region) is one; it is called from several
+/// threads at once.
 template <int Dim>
-using WeightField = std::function<double(const Point<Dim>& x, int region)>;
+class WeightField {
+ public:
+  WeightField(std::nullptr_t = nullptr) {}  // NOLINT: no field
+  template <std::invocable<const Point<Dim>&, int> F>
+  WeightField(F weight) : weight_(std::move(weight)) {}  // NOLINT: a callable is a field
+  /// A weight that depends on the region alone: what a body weighs need not be asked point by point.
+  static WeightField by_region(std::function<double(int region)> weight) {
+    WeightField field;
+    field.weight_ = [weight](const Point<Dim>&, int region) { return weight(region); };
+    field.of_region_ = std::move(weight);
+    return field;
+  }
+
+  explicit operator bool() const { return weight_ != nullptr; }
+  double operator()(const Point<Dim>& x, int region) const { return weight_(x, region); }
+  /// Whether every point of the region is known to have this weight.
+  bool is_constant(int region, double weight) const {
+    return of_region_ && of_region_(region) == weight;
+  }
+
+ private:
+  std::function<double(const Point<Dim>&, int)> weight_;
+  std::function<double(int)> of_region_;
+};
 
 /// 1 in rigid bodies (regions above 0), 0 elsewhere.
 template <int Dim>
 WeightField<Dim> body_weights() {
-  return [](const Point<Dim>&, int region) { return region > 0 ? 1.0 : 0.0; };
+  return WeightField<Dim>::by_region([](int region) { return region > 0 ? 1.0 : 0.0; });
 }
 
 /// Watches the weights that an energy meets while it is built, from any thread.

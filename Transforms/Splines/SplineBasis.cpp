@@ -35,6 +35,15 @@ Point<Dim> SplineBasis<Dim>::nearest_point(const Point<Dim>& x) const {
   return inside;
 }
 
+template <int Dim>
+std::shared_ptr<const HessianPattern> SplineBasis<Dim>::pattern() const {
+  std::call_once(kept_pattern_->made, [this] {
+    kept_pattern_->pattern =
+        std::make_shared<const HessianPattern>(num_control_points(), couplings());
+  });
+  return kept_pattern_->pattern;
+}
+
 template class SplineBasis<2>;
 template class SplineBasis<3>;
 

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "Core/Box.h"
 #include "Core/Point.h"
 #include "Core/Raster.h"
+#include "Transforms/BlockHessian.h"
 
 namespace crease {
 
@@ -29,17 +31,18 @@ struct BasisValues {
   Eigen::Matrix<double, kNumSecondDerivatives<Dim>, Eigen::Dynamic> hessians;  ///< 1/mm^2; likewise
 };
 
-/// A cell in which every basis function is one polynomial, with the points of a Gauss rule in it.
+/// Points of Gauss rules on cells in which every basis function is one polynomial: one cell, or some
+/// small ones of the same patch and bands.
 template <int Dim>
 struct QuadratureElement {
-  std::vector<int> control_points;  ///< k functions that do not vanish in the cell
-  int region = -1;  ///< body label of the patch that holds the cell; -1: the basis has no regions
+  std::vector<int> control_points;  ///< k functions that do not vanish in all of the cells
+  int region = -1;  ///< body label of the patch that holds the cells; -1: the basis has no regions
   int patch = -1;   ///< number of that patch (triangle, knot span)
   bool in_band =
       false;  ///< lies in the bending gap of a crease (feature-line theory: it carries no bending)
   bool in_two_sided_band = false;  ///< same, of a crease without a body side: rigidity skips it too
   Eigen::Matrix<double, Dim, Eigen::Dynamic> points;  ///< Dim x q, mm
-  Eigen::VectorXd weights;                            ///< q, sum = the cell's area or volume
+  Eigen::VectorXd weights;                            ///< q, sum = the cells' area or volume
   Eigen::MatrixXd values;                             ///< k x q
   std::vector<Eigen::MatrixXd> gradients;             ///< Dim matrices k x q, or empty
   std::vector<Eigen::MatrixXd> hessians;  ///< kNumSecondDerivatives matrices k x q, or empty
@@ -83,8 +86,17 @@ class SplineBasis {
       const std::function<bool(int region, int patch)>& wanted = nullptr) const = 0;
   /// Pairs i <= k of control points whose functions overlap: the sparsity of any local energy.
   virtual std::vector<std::pair<int, int>> couplings() const = 0;
+  /// The same as a pattern, made at the first call and kept.
+  std::shared_ptr<const HessianPattern> pattern() const;
   /// Prepares the basis for all samples of a raster. Samples outside the domain are not covered.
   virtual std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const = 0;
+
+ private:
+  struct KeptPattern {
+    std::once_flag made;
+    std::shared_ptr<const HessianPattern> pattern;
+  };
+  std::shared_ptr<KeptPattern> kept_pattern_ = std::make_shared<KeptPattern>();
 };
 
 extern template class SplineBasis<2>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <unordered_map>
 
@@ -25,20 +26,21 @@ class TriangleElements {
     size_ = std::sqrt(signed_content<2>(simplex_corners(net.mesh, triangle)));
   }
 
-  std::vector<QuadratureElement<2>> make(const std::vector<KnotCell>& cells, int degree) {
+  std::vector<QuadratureElement<2>> make(std::vector<KnotCell> cells, int degree) {
+    std::stable_sort(cells.begin(), cells.end(),
+                     [](const KnotCell& a, const KnotCell& b) { return bands(a) < bands(b); });
     std::vector<QuadratureElement<2>> elements;
-    elements.reserve(cells.size());
     CellRule rule;
     for (const KnotCell& cell : cells) {
       set_cell_rule(cell.polygon, degree, rule);
-      start_element(cell, rule, elements);
       const int total = static_cast<int>(rule.points.size());
+      if (parts_.empty() || used_ + total > kLanes || bands(cell) != bands_) {
+        flush(elements);
+        bands_ = bands(cell);
+      }
       for (int first = 0; first < total; first += kLanes) {
-        const int count = std::min(total - first, kLanes);
-        if (used_ + count > kLanes) flush(elements);
-        batch_.push_back({static_cast<int>(elements.size()) - 1, used_, first, count});
-        add_points(cell, rule, first, count);
-        if (total > kLanes) flush(elements);  // such cells share no batch: all theirs are alike
+        if (first > 0) flush(elements);
+        add_points(cell, rule, first, std::min(total - first, kLanes));
       }
     }
     flush(elements);
@@ -46,98 +48,101 @@ class TriangleElements {
   }
 
  private:
-  // Points first .. first + count - 1 of an element, in the batch from `lane` on.
+  // Lanes first .. first + count - 1 hold points of one cell, where functions vanish or not as a whole.
   struct Part {
-    int element, lane, first, count;
+    int first, count;
   };
 
-  void start_element(const KnotCell& cell, const CellRule& rule,
-                     std::vector<QuadratureElement<2>>& elements) const {
-    QuadratureElement<2> e;
-    e.region = region_;
-    e.patch = triangle_;
-    e.in_band = cell.in_band;
-    e.in_two_sided_band = cell.in_two_sided_band;
-    const auto count = static_cast<Eigen::Index>(rule.points.size());
-    e.points.resize(2, count);
-    for (Eigen::Index i = 0; i < count; ++i) e.points.col(i) = rule.points[i];
-    e.weights = Eigen::Map<const Eigen::VectorXd>(rule.weights.data(), count);
-    elements.push_back(std::move(e));
-  }
+  static int bands(const KnotCell& cell) { return 2 * cell.in_band + cell.in_two_sided_band; }
 
   void add_points(const KnotCell& cell, const CellRule& rule, int first, int count) {
+    parts_.push_back({used_, count});
     for (int i = first; i < first + count; ++i, ++used_) {
       lanes_.x[used_] = rule.points[i].x();
       lanes_.y[used_] = rule.points[i].y();
       lanes_.side_x[used_] = cell.centroid.x();
       lanes_.side_y[used_] = cell.centroid.y();
+      weights_[used_] = rule.weights[i];
     }
   }
 
-  // Evaluates the lanes filled so far and hands the values to their elements.
+  // Makes one element of the lanes filled so far.
   void flush(std::vector<QuadratureElement<2>>& elements) {
     if (used_ == 0) return;
     fill_lanes(lanes_, used_);
     std::fill(lanes_.inside_x, lanes_.inside_x + kLanes, inside_.x());
     std::fill(lanes_.inside_y, lanes_.inside_y + kLanes, inside_.y());
     evaluator_.evaluate(lanes_, {&triangle_, 1}, derivatives_, scratch_);
-    sort_functions();
-    for (const Part& part : batch_) store(part, elements[part.element]);
-    batch_.clear();
+    choose_functions();
+    elements.push_back(element());
+    parts_.clear();
     used_ = 0;
   }
 
-  void sort_functions() {
-    const auto found = scratch_.control_points();
-    order_.resize(found.size());
-    std::iota(order_.begin(), order_.end(), 0);
-    std::sort(order_.begin(), order_.end(), [&](int a, int b) { return found[a] < found[b]; });
-  }
-
-  // The matrix of a quantity: value, d/dx, d/dy, d2/dxx, d2/dxy, d2/dyy.
-  static Eigen::MatrixXd& matrix_of(QuadratureElement<2>& e, int quantity) {
-    if (quantity == 0) return e.values;
-    return quantity < 3 ? e.gradients[quantity - 1] : e.hessians[quantity - 3];
-  }
-
-  // The functions that do not vanish in the cell, by control point. Cells of several batches find the same
-  // functions in each, since their sides are frozen, and keep all of them.
-  void choose_functions(const Part& part, QuadratureElement<2>& e) {
+  // Whether function f is nothing but rounding in a cell.
+  bool vanishes(int f, const Part& part) const {
     constexpr double kZero = 1e-13;
+    double unit = 1.0;
+    for (int quantity = 0; quantity < kQuantities[derivatives_]; ++quantity) {
+      if (quantity == 1 || quantity == 3) unit *= size_;
+      const double* lane = scratch_.lanes(f, quantity) + part.first;
+      for (int p = 0; p < part.count; ++p) {
+        if (unit * std::abs(lane[p]) >= kZero) return false;
+      }
+    }
+    return true;
+  }
+
+  // The functions that do not vanish in all cells, by control point, and the cells where they do not.
+  void choose_functions() {
     const auto found = scratch_.control_points();
     chosen_.clear();
-    for (int f : order_) {
-      bool vanishes = part.count == e.points.cols();
-      double unit = 1.0;
-      for (int quantity = 0; quantity < kQuantities[derivatives_] && vanishes; ++quantity) {
-        if (quantity == 1 || quantity == 3) unit *= size_;
-        const double* lane = scratch_.lanes(f, quantity) + part.lane;
-        for (int p = 0; p < part.count; ++p)
-          vanishes = vanishes && unit * std::abs(lane[p]) < kZero;
-      }
-      if (!vanishes) chosen_.push_back(f);
+    for (int f = 0; f < std::ssize(found); ++f) {
+      std::uint32_t present = 0;
+      for (std::size_t p = 0; p < parts_.size(); ++p) present |= !vanishes(f, parts_[p]) << p;
+      if (present != 0) chosen_.push_back({found[f], f, present});
     }
-    e.control_points.resize(chosen_.size());
-    for (std::size_t i = 0; i < chosen_.size(); ++i) e.control_points[i] = found[chosen_[i]];
-    const auto rows = static_cast<Eigen::Index>(chosen_.size());
-    if (derivatives_ > 0) e.gradients.resize(2);
-    if (derivatives_ > 1) e.hessians.resize(3);
-    for (int quantity = 0; quantity < kQuantities[derivatives_]; ++quantity) {
-      matrix_of(e, quantity).resize(rows, e.points.cols());
-    }
+    std::sort(chosen_.begin(), chosen_.end(),
+              [](const Chosen& a, const Chosen& b) { return a.control_point < b.control_point; });
   }
 
-  void store(const Part& part, QuadratureElement<2>& e) {
-    if (part.first == 0) choose_functions(part, e);
-    for (int quantity = 0; quantity < kQuantities[derivatives_]; ++quantity) {
-      Eigen::MatrixXd& target = matrix_of(e, quantity);
-      double* to = target.data() + part.first * target.rows();
-      for (std::size_t i = 0; i < chosen_.size(); ++i) {
-        const double* lane = scratch_.lanes(chosen_[i], quantity) + part.lane;
-        for (int p = 0; p < part.count; ++p) to[p * target.rows() + i] = lane[p];
+  QuadratureElement<2> element() const {
+    QuadratureElement<2> e;
+    e.region = region_;
+    e.patch = triangle_;
+    e.in_band = bands_ >= 2;
+    e.in_two_sided_band = bands_ % 2 == 1;
+    e.points.resize(2, used_);
+    for (int p = 0; p < used_; ++p) e.points.col(p) = Point<2>(lanes_.x[p], lanes_.y[p]);
+    e.weights = Eigen::Map<const Eigen::VectorXd>(weights_, used_);
+    e.control_points.reserve(chosen_.size());
+    for (const Chosen& c : chosen_) e.control_points.push_back(c.control_point);
+    e.values = quantity(0);
+    for (int d = 1; d < kQuantities[derivatives_]; ++d) {
+      (d < 3 ? e.gradients : e.hessians).push_back(quantity(d));
+    }
+    return e;
+  }
+
+  // Functions by points, exactly zero where a function vanishes.
+  Eigen::MatrixXd quantity(int number) const {
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(std::ssize(chosen_), used_);
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+      const double* lane = scratch_.lanes(chosen_[i].function, number);
+      for (std::size_t p = 0; p < parts_.size(); ++p) {
+        if ((chosen_[i].present >> p & 1) == 0) continue;
+        for (int l = parts_[p].first; l < parts_[p].first + parts_[p].count; ++l) {
+          values(i, l) = lane[l];
+        }
       }
     }
+    return values;
   }
+
+  struct Chosen {
+    int control_point, function;
+    std::uint32_t present;  // a bit per part
+  };
 
   const TriangularBSplineEvaluator& evaluator_;
   const int triangle_;
@@ -147,9 +152,11 @@ class TriangleElements {
   int region_ = 0;
   double size_ = 1.0;
   LanePoints lanes_;
+  double weights_[kLanes];
   int used_ = 0;
-  std::vector<Part> batch_;
-  std::vector<int> order_, chosen_;  // functions of the scratch
+  int bands_ = 0;
+  std::vector<Part> parts_;
+  std::vector<Chosen> chosen_;
 };
 
 // A matrix with its rows in another order.

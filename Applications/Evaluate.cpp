@@ -133,9 +133,9 @@ EvaluationFiles<Dim> read_files(const EvaluateCommand& c, RunReport& report) {
 /// The field and determinants of a transform on the grid of the other files.
 template <int Dim>
 void sample_transform(EvaluationFiles<Dim>& files) {
-  const Raster<Dim> raster = files.raster();
-  files.displacement = displacement_image(*files.transform, raster);
-  files.determinants = determinant_image(jacobian_map(*files.transform, raster));
+  TransformImages<Dim> images = transform_images(*files.transform, files.raster());
+  files.displacement = std::move(images.displacement);
+  files.determinants = std::move(images.determinants);
 }
 
 template <int Dim>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "Applications/TransformImages.h"
 #include "Core/Parallel.h"
 #include "Images/MakeInterpolator.h"
 #include "Images/Resample.h"
@@ -70,11 +69,7 @@ template <int Dim>
 RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterInput<Dim>& input,
                                 const Transform<Dim>& transform) {
   const Raster<Dim>& raster = input.fixed.image.raster();
-  RegisterImages<Dim> images;
-  images.displacement = displacement_image(transform, raster);
-  const JacobianMap<Dim> jacobian = jacobian_map(transform, raster);
-  images.determinants = determinant_image(jacobian);
-  images.domain = Mask<Dim>(raster, jacobian.in_domain);
+  RegisterImages<Dim> images{transform_images(transform, raster), {}};
   const auto kind =
       options.interpolator == "linear" ? InterpolationKind::kLinear : InterpolationKind::kCubic;
   images.warped =

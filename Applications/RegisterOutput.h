@@ -3,17 +3,15 @@
 #include "Applications/OutputFolder.h"
 #include "Applications/RegisterInput.h"
 #include "Applications/RegisterRun.h"
+#include "Applications/TransformImages.h"
 #include "Registration/Evaluation.h"
 
 namespace crease {
 
 /// Images that follow from the transform, on the fixed grid.
 template <int Dim>
-struct RegisterImages {
-  DisplacementField<Dim> displacement;  ///< T(x) - x, mm
-  Image<float, Dim> determinants;       ///< det grad T
-  Mask<Dim> domain;                     ///< where the transform is defined
-  Image<float, Dim> warped;             ///< moving(T(x)); 0 outside the moving image
+struct RegisterImages : TransformImages<Dim> {
+  Image<float, Dim> warped;  ///< moving(T(x)); 0 outside the moving image
 };
 
 template <int Dim>

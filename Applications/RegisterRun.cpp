@@ -177,6 +177,7 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   registration.null_space(null_space_of(options.null_space));
   Schedule schedule;
   schedule.levels = options.levels;
+  schedule.adapt_bending = !options.gamma;
   registration.schedule(schedule);
   return registration;
 }
@@ -201,6 +202,7 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
     outcome.metric_before = result.metric_before;
     outcome.metric_after = result.metric_after;
     outcome.energies = result.energies;
+    for (const auto& [name, weight] : result.weights) outcome.weights[name] = weight;
     outcome.levels = std::move(result.levels);
     outcome.stopped_because = result.stopped_because;
     outcome.free_parameters = result.free_parameters;

@@ -1,18 +1,18 @@
 #pragma once
 
 #include "Images/Image.h"
-#include "Transforms/JacobianMap.h"
 #include "Transforms/Transform.h"
 
 namespace crease {
 
-/// T(x) - x at every sample, as an image.
+/// A transform at every sample of a raster.
 template <int Dim>
-DisplacementField<Dim> displacement_image(const Transform<Dim>& transform,
-                                          const Raster<Dim>& raster);
-
-/// det grad T at every sample, as an image.
+struct TransformImages {
+  DisplacementField<Dim> displacement;  ///< T(x) - x
+  Image<float, Dim> determinants;       ///< of grad T
+  Mask<Dim> domain;                     ///< where T is defined by its spline
+};
 template <int Dim>
-Image<float, Dim> determinant_image(const JacobianMap<Dim>& map);
+TransformImages<Dim> transform_images(const Transform<Dim>& transform, const Raster<Dim>& raster);
 
 }  // namespace crease

@@ -41,7 +41,8 @@ class DampedSolver {
   /// nullopt when the damped matrix is not positive definite or not finite.
   std::optional<Eigen::VectorXd> solve(const Eigen::Ref<const Eigen::VectorXd>& b, double damping);
 
-  /// Counted from the beginning.
+  /// Counted from the beginning, or from the last call of start_counting().
+  void start_counting() { factorizations_ = cg_iterations_ = 0; }
   int num_factorizations() const { return factorizations_; }
   int num_cg_iterations() const { return cg_iterations_; }
 

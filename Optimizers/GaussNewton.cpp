@@ -53,7 +53,11 @@ OptimizerResult GaussNewton::minimize(ObjectiveFunction& function, const Eigen::
                                       const NullSpace* null_space,
                                       const ProgressCallback& progress) const {
   Minimization run(function, start, null_space, stopping_, progress, /*with_hessian=*/true);
-  DampedSolver solver(options_.linear_solver, run.null_space().num_columns());
+  const auto kept = options_.solver ? options_.solver
+                                    : std::make_shared<DampedSolver>(
+                                          options_.linear_solver, run.null_space().num_columns());
+  DampedSolver& solver = *kept;
+  solver.start_counting();
   double damping = options_.initial_damping;
   while (!run.stopped()) {
     const EvaluatedPoint& here = run.current();

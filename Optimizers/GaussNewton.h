@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "Optimizers/DampedSolver.h"
 #include "Optimizers/Optimizer.h"
 
@@ -12,6 +14,9 @@ struct GaussNewtonOptions {
   double initial_damping = 1e-3;  ///< mu, relative to the diagonal
   int max_shortenings = 2;  ///< of a step that did not lower the value, before mu grows fourfold
   double shortening = 0.35;
+  /// Keeps analyses and factors from one minimisation to the next of the same kind, one at a time; null: each
+  /// starts afresh.
+  std::shared_ptr<DampedSolver> solver;
 };
 
 /// Gauss-Newton with Levenberg-Marquardt damping:  (N^T H N + mu diag) dY = -N^T g.

@@ -52,6 +52,9 @@ struct Schedule {
   int levels = 3;            ///< image pyramid, a factor of 2 each; fewer for small images
   double level_bending = 4;  ///< the energy named "bending" weighs this much more per coarser level
   bool optical_flow = true;  ///< try a start fitted to dense optical flow (2D, same modality)
+  /// Weighs the energy named "bending" by the noise and the roughness that the levels show
+  /// (BendingBalance), from its weight on, and more where the finest map folds.
+  bool adapt_bending = false;
   bool smooth_finest = true;  ///< low-pass [1 2 1]/4 at the finest level, against noise
 };
 
@@ -72,6 +75,7 @@ struct RegistrationResult {
   AffineMap<Dim> initial;  ///< A: what the alignment found
   AlignmentReport alignment;
   std::map<std::string, double> energies;  ///< unweighted, at the finest level
+  std::map<std::string, double> weights;   ///< of the energies, as used there
   double metric_before = 0;                ///< finest level, at A
   double metric_after = 0;
   std::vector<LevelReport> levels;

@@ -60,7 +60,7 @@ double RegistrationObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::Vector
     value += weight * term;
   }
   if (gradient != nullptr) *gradient = forces.reshaped();
-  if (hessian != nullptr) *hessian = hessian_.to_sparse();
+  if (hessian != nullptr) hessian_.to_sparse(*hessian);
   return value;
 }
 

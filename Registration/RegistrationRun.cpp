@@ -9,15 +9,22 @@
 #include "Images/IntensityRange.h"
 #include "Metrics/TargetDisplacement.h"
 #include "Optimizers/GaussNewton.h"
+#include "Registration/BendingWeight.h"
 #include "Registration/OpticalFlow.h"
 #include "Registration/SamplesInside.h"
 #include "Registration/StartingPoint.h"
 #include "Transforms/Energies/LandmarkEnergy.h"
+#include "Transforms/JacobianMap.h"
 
 namespace crease {
 namespace {
 
-constexpr int kTrialIterations = 3;       // that decide which start is followed
+constexpr double kLeastBending = 1e-6,
+                 kMostBending = 1e-1;  // times h^2: the range of balanced weights
+constexpr int kMostBalancings = 6;     // coarser levels included
+constexpr int kMostStiffenings = 4;    // of a map that folds
+constexpr double kStiffening = 4;
+constexpr int kTrialIterations = 2;      // that decide which start is followed
 constexpr int kLargestFlowImage = 1200;  // pixels: larger images give their flow at half the size
 
 /// Samples that lie in the domain of the bound grid keep their weight.
@@ -162,6 +169,14 @@ void RegistrationRun<Dim>::make_levels() {
   std::reverse(levels_.begin(), levels_.end());
 }
 
+/// How many samples share the noise of one, by the filters of the pyramid: [1 3 3 1]/8 on coarse levels,
+/// [1 2 1]/4 on a smoothed finest one.
+template <int Dim>
+double RegistrationRun<Dim>::correlated_samples(std::size_t level) const {
+  if (levels_[level].shrink > 1) return std::pow(1.6, Dim);
+  return parts_.schedule.smooth_finest ? std::pow(8.0 / 3.0, Dim) : 1.0;
+}
+
 /// Samples that the start maps outside the moving image have nothing to be compared with: they do not
 /// count at this level. The choice is kept for the whole level, so that the number of samples never
 /// jumps while the level is optimised.
@@ -179,7 +194,9 @@ void RegistrationRun<Dim>::choose_samples(std::size_t l, const Phi& start) {
     weights = image.weights;
     sum = all;
   }
-  level.noise_floor = 1e-11 * parts_.image_weight * sum * image.fixed.raster().sample_volume();
+  level.counted_measure = sum * image.fixed.raster().sample_volume();
+  level.correlated_measure = image.fixed.raster().sample_volume() * correlated_samples(l);
+  level.noise_floor = 1e-11 * parts_.image_weight * level.counted_measure;
   level.image = std::make_shared<ImageTerm<Dim>>(
       level.grid, parts_.metric({image.fixed, std::move(weights), image.moving, image.moving_mask}),
       affine_);
@@ -225,9 +242,8 @@ template <int Dim>
 std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
   std::vector<Phi> candidates;
   const bool pulled = null_space_->rank() > 0 || energies_.size() > parts_.energies.size();
-  candidates.push_back(
-      pulled ? StartingPoint<Dim>(pattern_, *null_space_, energies_).smoothest()
-             : Phi::Zero(null_space_->full_size()));
+  candidates.push_back(pulled ? StartingPoint<Dim>(pattern_, *null_space_, energies_).smoothest()
+                              : Phi::Zero(null_space_->full_size()));
   if (Dim == 2 && parts_.schedule.optical_flow && !images_.empty()) {
     candidates.push_back(fitted_to_flow(candidates.front()));
   }
@@ -236,21 +252,31 @@ std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
 
 template <int Dim>
 std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t level,
-                                                                   int max_iterations) const {
+                                                                    int max_iterations) {
   if (parts_.optimizer != nullptr) return parts_.optimizer;
   OptimizerOptions stopping;
   stopping.max_iterations = max_iterations;
   if (parts_.has_images()) {
     const bool finest = level + 1 == levels_.size();
-    stopping.relative_decrease = finest ? 1e-3 : 3e-3;
+    const bool last =
+        finest && (!parts_.schedule.adapt_bending || balanced_ >= std::ssize(levels_));
+    stopping.relative_decrease = last ? 1e-3 : 3e-3;
     stopping.small_decreases = 1;
     stopping.step_length = finest ? 0.02 : 0.1;
   }
   GaussNewtonOptions options;
-  // A scalar factor does not see how rigidity couples coordinates.
+  // A scalar factor does not see how rigidity couples coordinates; the factor of an earlier Hessian serves
+  // while bodies turn little.
   const bool coupled = std::ranges::any_of(
       energies_, [](const auto& energy) { return energy.energy->couples_coordinates(); });
-  if (coupled) options.linear_solver.kind = LinearSolver::kPreconditionedCg;
+  if (coupled) {
+    options.linear_solver.kind = LinearSolver::kPreconditionedCg;
+    options.linear_solver.max_cg_iterations = 6;
+  }
+  if (solver_ == nullptr) {
+    solver_ = std::make_shared<DampedSolver>(options.linear_solver, null_space_->num_columns());
+  }
+  options.solver = solver_;
   return std::make_shared<GaussNewton>(stopping, options);
 }
 
@@ -290,6 +316,77 @@ OptimizerResult RegistrationRun<Dim>::optimise_level(
 }
 
 template <int Dim>
+std::map<std::string, double> RegistrationRun<Dim>::terms_at(std::size_t level, const Phi& phi) {
+  const auto cost = objective(levels_[level]);
+  cost->evaluate(phi, nullptr, nullptr);
+  return cost->terms();
+}
+
+/// Books one minimisation of a level and gives its end.
+template <int Dim>
+typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::add_round(LevelReport& level,
+                                                                   OptimizerResult round) {
+  level.iterations += round.iterations;
+  level.evaluations += round.num_evaluations;
+  level.factorizations += round.num_factorizations;
+  level.stopped_because = result_.stopped_because = round.reason_text;
+  for (const auto& record : round.history) level.energy_history.push_back(record.value);
+  result_.converged =
+      round.reason != StopReason::kTimeLimit && round.reason != StopReason::kCancelled;
+  if (round.reason == StopReason::kIterationLimit) {
+    result_.warnings.push_back(message("level ", result_.levels.size() + 1, " of ", levels_.size(),
+                                       " stopped at the iteration limit (", round.iterations,
+                                       "); the result may still improve"));
+  }
+  return std::move(round.x);
+}
+
+/// Balances bending against the noise that the level's end shows, and bends more where the map folds.
+/// Returns whether the level is worth another round.
+template <int Dim>
+bool RegistrationRun<Dim>::renew_bending_weight(std::size_t l, const LevelReport& level,
+                                                const Phi& phi) {
+  constexpr double kMostChange = 32, kSmallChange = 2, kOverRelaxation = 1.5;
+  const Level& here = levels_[l];
+  const auto bending = std::ranges::find(energies_, "bending", &WeightedEnergy<Dim>::name);
+  if (!parts_.schedule.adapt_bending || bending == energies_.end() || here.image == nullptr) {
+    return false;
+  }
+  const bool finest = l + 1 == levels_.size();
+  if (finest && folds(phi)) {
+    if (stiffened_ == kMostStiffenings) return false;
+    ++stiffened_;
+    bending->weight *= kStiffening;
+    return true;
+  }
+  if (stiffened_ > 0 || balanced_ == kMostBalancings) return false;
+  const double h2 = std::pow(parts_.basis->mean_edge_length(), 2);
+  const BendingBalance balance{.image_energy = level.terms_after.at("image"),
+                               .counted_measure = here.counted_measure,
+                               .correlated_measure = here.correlated_measure,
+                               .bending_energy = level.terms_after.at("bending"),
+                               .free_parameters = result_.free_parameters};
+  const double before = bending->weight;
+  // Less bending roughens the motion, which asks for less again: go a little beyond what is asked for.
+  const double change = std::pow(balance.weight() / before, kOverRelaxation);
+  const double wanted = std::clamp(before * std::clamp(change, 1 / kMostChange, kMostChange),
+                                   kLeastBending * h2, kMostBending * h2);
+  const bool renew = !finest || wanted > kSmallChange * before || wanted < before / kSmallChange;
+  if (renew) bending->weight = wanted;
+  ++balanced_;
+  return renew && finest;  // a coarser level chooses for the next one
+}
+
+/// Whether the map turns tissue over at a sample of the second finest level.
+template <int Dim>
+bool RegistrationRun<Dim>::folds(const Phi& phi) const {
+  SplineTransform<Dim> transform(parts_.basis, affine_);
+  transform.set_parameters(phi);
+  const std::size_t l = levels_.size() > 1 ? levels_.size() - 2 : 0;
+  return jacobian_map(transform, images_[l].fixed.raster()).statistics().num_folded > 0;
+}
+
+template <int Dim>
 void RegistrationRun<Dim>::optimise() {
   tell("start", 0, 0, 0);
   std::vector<Phi> candidates = starts();
@@ -300,28 +397,13 @@ void RegistrationRun<Dim>::optimise() {
     level.shrink = levels_[l].shrink;
     // A start that throws samples out of the moving image must not profit from it: A alone decides first.
     choose_samples(l, l == 0 ? Phi(Phi::Zero(null_space_->full_size())) : candidates.front());
-    const auto cost = objective(levels_[l]);
-    const Phi start = better_start(l, candidates);
-    OptimizerResult best = optimise_level(l, start, optimizer_of(l));
-    cost->evaluate(candidates.front(), nullptr, nullptr);
-    level.terms_before = cost->terms();
-    cost->evaluate(best.x, nullptr, nullptr);
-    level.terms_after = cost->terms();
-    level.iterations = best.iterations;
-    level.evaluations = best.num_evaluations;
-    level.factorizations = best.num_factorizations;
-    level.stopped_because = best.reason_text;
-    for (const auto& record : best.history) level.energy_history.push_back(record.value);
-    result_.converged =
-        best.reason != StopReason::kTimeLimit && best.reason != StopReason::kCancelled;
-    if (best.reason == StopReason::kIterationLimit) {
-      result_.warnings.push_back(message("level ", l + 1, " of ", levels_.size(),
-                                         " stopped at the iteration limit (", best.iterations,
-                                         "); the result may still improve"));
-    }
-    result_.stopped_because = best.reason_text;
+    level.terms_before = terms_at(l, candidates.front());
+    phi = better_start(l, candidates);
+    do {
+      phi = add_round(level, optimise_level(l, phi, optimizer_of(l)));
+      level.terms_after = terms_at(l, phi);
+    } while (!cancelled_ && renew_bending_weight(l, level, phi));
     result_.levels.push_back(std::move(level));
-    phi = std::move(best.x);
     candidates = {phi};
   }
   add_time("optimization");
@@ -347,6 +429,7 @@ void RegistrationRun<Dim>::report(const Phi& phi) {
     result_.landmark_errors_mm.push_back(
         (transform->map(parts_.landmarks.fixed[j]) - parts_.landmarks.moving[j]).norm());
   }
+  for (const auto& energy : energies_) result_.weights[energy.name] = energy.weight;
   result_.transform = std::move(transform);
   add_time("report");
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "Optimizers/DampedSolver.h"
 #include "Registration/ImageLevels.h"
 #include "Registration/RegistrationParts.h"
 
@@ -24,7 +25,9 @@ class RegistrationRun {
     std::shared_ptr<const BoundGrid<Dim>> grid;
     std::shared_ptr<ImageTerm<Dim>> image;  // null without images
     double bending_factor = 1;
-    double noise_floor = 0;  // values of the cost that are rounding alone
+    double counted_measure = 0;     // of the samples that count
+    double correlated_measure = 0;  // in which a sample's noise is correlated
+    double noise_floor = 0;         // values of the cost that are rounding alone
   };
 
   void check_parts() const;
@@ -38,12 +41,17 @@ class RegistrationRun {
   Phi fitted_to_flow(const Phi& near);
   void optimise();
   Phi better_start(std::size_t level, const std::vector<Phi>& candidates);
+  std::map<std::string, double> terms_at(std::size_t level, const Phi& phi);
+  Phi add_round(LevelReport& level, OptimizerResult round);
+  double correlated_samples(std::size_t level) const;
+  bool renew_bending_weight(std::size_t l, const LevelReport& level, const Phi& phi);
+  bool folds(const Phi& phi) const;
   OptimizerResult optimise_level(std::size_t level, const Phi& start,
                                  const std::shared_ptr<const Optimizer>& optimizer);
   void report(const Phi& phi);
 
   std::unique_ptr<RegistrationObjective<Dim>> objective(const Level& level) const;
-  std::shared_ptr<const Optimizer> optimizer_of(std::size_t level, int max_iterations = 100) const;
+  std::shared_ptr<const Optimizer> optimizer_of(std::size_t level, int max_iterations = 100);
   void tell(const std::string& stage, std::size_t level, int iteration, double energy);
   void add_time(const std::string& stage);
 
@@ -57,8 +65,10 @@ class RegistrationRun {
   std::shared_ptr<const NullSpace> null_space_;
   std::shared_ptr<const HessianPattern> pattern_;
   std::vector<WeightedEnergy<Dim>> energies_;
+  std::shared_ptr<DampedSolver> solver_;  // kept from level to level
   std::vector<ImageLevel<Dim>> images_;
   std::vector<Level> levels_;
+  int balanced_ = 0, stiffened_ = 0;  // how often bending was weighed anew
   RegistrationResult<Dim> result_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "Core/Error.h"
+#include "Core/Parallel.h"
 
 namespace crease {
 
@@ -28,6 +29,8 @@ HessianPattern::HessianPattern(int num_control_points,
     columns_.push_back(k);
   }
   for (std::size_t i = 1; i < row_start_.size(); ++i) row_start_[i] += row_start_[i - 1];
+  column_sizes_.assign(static_cast<std::size_t>(num_control_points), 0);
+  for (int k : columns_) rank_in_column_.push_back(column_sizes_[static_cast<std::size_t>(k)]++);
 }
 
 int HessianPattern::slot(int i, int k) const {
@@ -78,41 +81,76 @@ BlockHessian<Dim>& BlockHessian<Dim>::operator+=(const BlockHessian& other) {
 
 template <int Dim>
 Eigen::SparseMatrix<double> BlockHessian<Dim>::to_sparse() const {
+  Eigen::SparseMatrix<double> matrix;
+  to_sparse(matrix);
+  return matrix;
+}
+
+/// First entry of column Dim k + b: the diagonal block gives Dim - b entries, each other block Dim.
+template <int Dim>
+std::vector<int> column_starts(const HessianPattern& pattern) {
+  std::vector<int> start{0};
+  for (int blocks : pattern.column_sizes()) {
+    for (int b = 0; b < Dim; ++b) start.push_back(start.back() + Dim * blocks - b);
+  }
+  return start;
+}
+
+template <int Dim>
+bool BlockHessian<Dim>::has_structure(const Eigen::SparseMatrix<double>& matrix) const {
   const int n = pattern_->size();
-  const auto& row_start = pattern_->row_start();
-  const auto& columns = pattern_->columns();
-
-  // Entries per column of blocks; within a column, rows ascend when the rows are visited in order.
-  std::vector<int> below(static_cast<std::size_t>(n), 0);
-  for (int k : columns) ++below[static_cast<std::size_t>(k)];
-
-  Eigen::SparseMatrix<double> matrix(Dim * n, Dim * n);
-  constexpr int kUpper = Dim * (Dim - 1) / 2;  // entries of a diagonal block above its diagonal
-  matrix.resizeNonZeros(Dim * Dim * pattern_->num_entries() - kUpper * n);
-  int* outer = matrix.outerIndexPtr();
-  int* inner = matrix.innerIndexPtr();
-  double* values = matrix.valuePtr();
-  outer[0] = 0;
-  for (int k = 0; k < n; ++k) {
-    for (int b = 0; b < Dim; ++b) {
-      outer[Dim * k + b + 1] = outer[Dim * k + b] + Dim * below[static_cast<std::size_t>(k)] - b;
+  if (matrix.rows() != Dim * n || matrix.cols() != Dim * n || !matrix.isCompressed()) return false;
+  const auto start = column_starts<Dim>(*pattern_);
+  if (!std::equal(start.begin(), start.end(), matrix.outerIndexPtr())) return false;
+  for (int i = 0; i < n; ++i) {
+    for (int s = pattern_->row_start()[i]; s < pattern_->row_start()[i + 1]; ++s) {
+      const int column = Dim * pattern_->columns()[s] + Dim - 1;
+      const int last = start[column] + Dim * pattern_->rank_in_column()[s];
+      if (matrix.innerIndexPtr()[last] != Dim * i + Dim - 1) return false;
     }
   }
-  std::vector<int> next(outer, outer + Dim * n);
+  return true;
+}
+
+template <int Dim>
+void BlockHessian<Dim>::make_structure(Eigen::SparseMatrix<double>& matrix) const {
+  const int n = pattern_->size();
+  const auto start = column_starts<Dim>(*pattern_);
+  matrix.resize(Dim * n, Dim * n);
+  matrix.resizeNonZeros(start.back());
+  std::copy(start.begin(), start.end(), matrix.outerIndexPtr());
   for (int i = 0; i < n; ++i) {
-    for (int s = row_start[i]; s < row_start[i + 1]; ++s) {
-      const int k = columns[static_cast<std::size_t>(s)];
-      const auto& block = blocks_[static_cast<std::size_t>(s)];
+    for (int s = pattern_->row_start()[i]; s < pattern_->row_start()[i + 1]; ++s) {
       for (int b = 0; b < Dim; ++b) {
-        int& at = next[static_cast<std::size_t>(Dim * k + b)];
-        for (int a = i == k ? b : 0; a < Dim; ++a, ++at) {
-          inner[at] = Dim * i + a;
-          values[at] = block(a, b);
+        const int column = Dim * pattern_->columns()[s] + b;
+        const int first = start[column] + Dim * pattern_->rank_in_column()[s] - b;
+        for (int a = pattern_->rank_in_column()[s] == 0 ? b : 0; a < Dim; ++a) {
+          matrix.innerIndexPtr()[first + a] = Dim * i + a;
         }
       }
     }
   }
-  return matrix;
+}
+
+template <int Dim>
+void BlockHessian<Dim>::to_sparse(Eigen::SparseMatrix<double>& matrix) const {
+  if (!has_structure(matrix)) make_structure(matrix);
+  const int* start = matrix.outerIndexPtr();
+  double* values = matrix.valuePtr();
+  constexpr int kRowsAtOnce = 256;
+  const int n = pattern_->size();
+  parallel_for((n + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t part) {
+    const int begin = static_cast<int>(part) * kRowsAtOnce;
+    const int first_slot = pattern_->row_start()[begin];
+    const int last_slot = pattern_->row_start()[std::min(n, begin + kRowsAtOnce)];
+    for (int s = first_slot; s < last_slot; ++s) {
+      const int rank = pattern_->rank_in_column()[s];
+      for (int b = 0; b < Dim; ++b) {
+        double* first = values + start[Dim * pattern_->columns()[s] + b] + Dim * rank - b;
+        for (int a = rank == 0 ? b : 0; a < Dim; ++a) first[a] = blocks_[s](a, b);
+      }
+    }
+  });
 }
 
 template class BlockHessian<2>;

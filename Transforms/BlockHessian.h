@@ -21,10 +21,15 @@ class HessianPattern {
   int slot(int i, int k) const;
   const std::vector<int>& row_start() const { return row_start_; }
   const std::vector<int>& columns() const { return columns_; }
+  /// How many entries of its column lie above an entry: 0 on the diagonal.
+  const std::vector<int>& rank_in_column() const { return rank_in_column_; }
+  /// Number of entries of each column.
+  const std::vector<int>& column_sizes() const { return column_sizes_; }
 
  private:
   std::vector<int> row_start_;
   std::vector<int> columns_;
+  std::vector<int> rank_in_column_, column_sizes_;
 };
 
 /// A symmetric matrix over the stacked control points (parameter Dim * i + a is coordinate a of control
@@ -45,8 +50,13 @@ class BlockHessian {
   BlockHessian& operator+=(const BlockHessian& other);
   /// Lower triangle as a sparse matrix, (Dim * n)^2, column-major, with the same pattern at every call.
   Eigen::SparseMatrix<double> to_sparse() const;
+  /// The same into a matrix of an earlier call, of which only the values are written anew.
+  void to_sparse(Eigen::SparseMatrix<double>& matrix) const;
 
  private:
+  bool has_structure(const Eigen::SparseMatrix<double>& matrix) const;
+  void make_structure(Eigen::SparseMatrix<double>& matrix) const;
+
   std::shared_ptr<const HessianPattern> pattern_;
   std::vector<Matrix<Dim>> blocks_;
 };

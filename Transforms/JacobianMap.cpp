@@ -39,8 +39,10 @@ JacobianStatistics<Dim> JacobianMap<Dim>::statistics(std::span<const std::uint8_
 }
 
 template <int Dim>
-JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster) {
+JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster,
+                              ControlPoints<Dim>* displacement) {
   JacobianMap<Dim> result{raster, {}, {}};
+  if (displacement) displacement->resize(Dim, raster.num_samples());
   result.determinants.resize(static_cast<std::size_t>(raster.num_samples()));
   result.in_domain.resize(result.determinants.size());
   const Vector<Dim> step = raster.index_to_point().col(0);
@@ -49,8 +51,10 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
     for (int i = 0; i < raster.size[0]; ++i) {
       const Point<Dim> x = start + i * step;
       const auto n = static_cast<std::size_t>(row * raster.size[0] + i);
-      result.determinants[n] = transform.spatial_jacobian(x).determinant();
-      result.in_domain[n] = transform.in_domain(x) ? 1 : 0;
+      const auto sample = transform.sample(x);
+      result.determinants[n] = sample.jacobian.determinant();
+      result.in_domain[n] = sample.in_domain ? 1 : 0;
+      if (displacement) displacement->col(static_cast<Eigen::Index>(n)) = sample.point - x;
     }
   });
   return result;
@@ -58,7 +62,7 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
 
 template struct JacobianMap<2>;
 template struct JacobianMap<3>;
-template JacobianMap<2> jacobian_map(const Transform<2>&, const Raster<2>&);
-template JacobianMap<3> jacobian_map(const Transform<3>&, const Raster<3>&);
+template JacobianMap<2> jacobian_map(const Transform<2>&, const Raster<2>&, ControlPoints<2>*);
+template JacobianMap<3> jacobian_map(const Transform<3>&, const Raster<3>&, ControlPoints<3>*);
 
 }  // namespace crease

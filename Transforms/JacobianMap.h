@@ -32,8 +32,10 @@ struct JacobianMap {
 };
 
 /// In parallel, the same on any number of threads.
+/// @param displacement  not null: gets T(x) - x, a column per sample, which costs little more here.
 template <int Dim>
-JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster);
+JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster,
+                              ControlPoints<Dim>* displacement = nullptr);
 
 extern template struct JacobianMap<2>;
 extern template struct JacobianMap<3>;

@@ -68,6 +68,22 @@ Matrix<OutDim, InDim> SplineTransform<InDim, OutDim>::spatial_jacobian(
 }
 
 template <int InDim, int OutDim>
+typename Transform<InDim, OutDim>::Sample SplineTransform<InDim, OutDim>::sample(
+    const Point<InDim>& x) const {
+  const bool inside = basis_->contains(x);
+  const Point<InDim> p = inside ? x : basis_->nearest_point(x);
+  const auto here = basis_->evaluate(p, 1);
+  Vector<OutDim> u = Vector<OutDim>::Zero();
+  Matrix<OutDim, InDim> gradient = Matrix<OutDim, InDim>::Zero();
+  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+    const auto& phi = control_points_.col(here.control_points[n]);
+    u += here.values[n] * phi;
+    gradient += phi * here.gradients.col(n).transpose();
+  }
+  return {affine_(x) + u + gradient * (x - p), affine_.linear + gradient, inside};
+}
+
+template <int InDim, int OutDim>
 std::array<Matrix<InDim>, OutDim> SplineTransform<InDim, OutDim>::second_derivatives(
     const Point<InDim>& x) const {
   const auto here = basis_->evaluate(basis_->nearest_point(x), 2);

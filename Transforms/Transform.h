@@ -21,6 +21,15 @@ class Transform {
   virtual Point<OutDim> map(const Point<InDim>& x) const = 0;
   /// dT/dx at x: OutDim x InDim, row = output coordinate, column = input coordinate; no unit.
   virtual Matrix<OutDim, InDim> spatial_jacobian(const Point<InDim>& x) const = 0;
+  /// All that is asked of a sample, for less than one by one.
+  struct Sample {
+    Point<OutDim> point;             ///< map(x)
+    Matrix<OutDim, InDim> jacobian;  ///< spatial_jacobian(x)
+    bool in_domain = true;
+  };
+  virtual Sample sample(const Point<InDim>& x) const {
+    return {map(x), spatial_jacobian(x), in_domain(x)};
+  }
   /// Whether T is defined by its spline at x; outside, `map` continues as its class documents.
   virtual bool in_domain(const Point<InDim>&) const { return true; }
 

@@ -218,7 +218,9 @@ void write_with_itk(const std::filesystem::path& path, ImageFormat format, const
     io->SetPixelType(image.num_components == 1 ? itk::IOPixelEnum::SCALAR
                      : image.colour            ? itk::IOPixelEnum::RGB
                                                : itk::IOPixelEnum::VECTOR);
-    io->SetUseCompression(false);
+    // PNG is always compressed; the lowest level takes a third of the time for a tenth more bytes.
+    io->SetUseCompression(format == ImageFormat::kPng);
+    io->SetCompressionLevel(1);
     set_whole_region(*io, image);
     io->WriteImageInformation();
     io->Write(image.data.get());

@@ -9,6 +9,7 @@
 #include "Transforms/RigidTransform.h"
 #include "Transforms/SplineBasisFile.h"
 #include "Transforms/SplineTransform.h"
+#include "Transforms/WholeFile.h"
 
 namespace crease {
 namespace {
@@ -131,20 +132,7 @@ void save_transform(const Transform<InDim, OutDim>& transform, const std::filesy
   json["format"] = kFormat;
   json["version"] = kVersion;
   json["dimensions"] = {InDim, OutDim};
-  const std::filesystem::path temporary = file.string() + ".part";
-  {
-    std::ofstream stream(temporary);
-    stream << json.dump(1) << '\n';
-    if (!stream.flush()) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw FileError(message(file.string(), ": cannot be written."));
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error)
-    throw FileError(message(file.string(), ": cannot be written (", error.message(), ")."));
+  write_whole_file(file, json.dump(1) + '\n');
 }
 
 TransformFileInfo peek_transform(const std::filesystem::path& file) {

@@ -18,10 +18,10 @@ extern char** environ;
 namespace crease::testing {
 namespace {
 
-/// Starts the command with its streams going to files.
-pid_t start(const std::vector<std::string>& arguments, const std::string& out,
-            const std::string& err) {
-  std::vector<std::string> texts = {CREASE_COMMAND};
+/// Starts a program with its streams going to files.
+pid_t start(const std::string& program, const std::vector<std::string>& arguments,
+            const std::string& out, const std::string& err) {
+  std::vector<std::string> texts = {program};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& text : texts) argv.push_back(text.data());
@@ -33,9 +33,9 @@ pid_t start(const std::vector<std::string>& arguments, const std::string& out,
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), kFlags, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), kFlags, 0600);
   pid_t process = 0;
-  const int error = posix_spawn(&process, CREASE_COMMAND, &actions, nullptr, argv.data(), environ);
+  const int error = posix_spawn(&process, program.c_str(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error("crease cannot be started");
+  if (error != 0) throw std::runtime_error(program + " cannot be started");
   return process;
 }
 
@@ -45,18 +45,23 @@ int exit_code(int status) {
 
 }  // namespace
 
-CommandResult run_crease(const std::vector<std::string>& arguments) {
+CommandResult run_program(const std::string& program, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   const std::string out = (folder / "out").string(), err = (folder / "err").string();
-  const pid_t process = start(arguments, out, err);
+  const pid_t process = start(program, arguments, out, err);
   int status = 0;
   waitpid(process, &status, 0);
   return {exit_code(status), read_text(out), read_text(err)};
 }
 
+CommandResult run_crease(const std::vector<std::string>& arguments) {
+  return run_program(CREASE_COMMAND, arguments);
+}
+
 bool kill_crease(const std::vector<std::string>& arguments, const std::function<bool()>& when) {
   const TemporaryFolder folder;
-  const pid_t process = start(arguments, (folder / "out").string(), (folder / "err").string());
+  const pid_t process =
+      start(CREASE_COMMAND, arguments, (folder / "out").string(), (folder / "err").string());
   int status = 0;
   while (waitpid(process, &status, WNOHANG) == 0) {
     if (when()) {

@@ -8,13 +8,16 @@
 
 namespace crease::testing {
 
-/// What a run of the command left.
+/// What a run of a program left.
 struct CommandResult {
   int code = -1;  ///< exit code; 128 + signal when it was killed
   std::string out, err;
 };
 
-/// Runs the built `crease` with these arguments, in a process of its own, and waits for it.
+/// Runs a program with these arguments, in a process of its own, and waits for it.
+CommandResult run_program(const std::string& program, const std::vector<std::string>& arguments);
+
+/// The same with the built `crease`.
 CommandResult run_crease(const std::vector<std::string>& arguments);
 
 /// Starts it, kills it with SIGKILL as soon as `when` returns true, and waits.

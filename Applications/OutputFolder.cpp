@@ -66,18 +66,29 @@ OutputFolder::OutputFolder(fs::path folder, std::vector<std::string> inputs)
   }
 }
 
-void OutputFolder::write(const std::string& name,
-                         const std::function<void(const fs::path&)>& write) const {
-  const fs::path path = file(name);
+void OutputFolder::check_is_no_input(const std::string& name) const {
   std::error_code ignored;
   for (const std::string& input : inputs_) {
-    if (fs::equivalent(input, path, ignored)) {
+    if (fs::equivalent(input, file(name), ignored)) {
       throw UsageError(message("--output ", folder_.string(), ": its ", name,
                                " is an input of this run; choose another folder."));
     }
   }
+}
+
+void OutputFolder::write(const std::string& name,
+                         const std::function<void(const fs::path&)>& write) const {
+  check_is_no_input(name);
+  const fs::path path = file(name);
+  std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
   write_file(path, write);
+}
+
+void OutputFolder::remove(const std::string& name) const {
+  check_is_no_input(name);
+  std::error_code ignored;
+  fs::remove(file(name), ignored);
 }
 
 void OutputFolder::write_text(const std::string& name, const std::string& text) const {

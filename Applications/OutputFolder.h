@@ -29,9 +29,13 @@ class OutputFolder {
   void write(const std::string& name,
              const std::function<void(const std::filesystem::path& temporary)>& write) const;
   void write_text(const std::string& name, const std::string& text) const;
+  /// Removes what an earlier run wrote and this one does not. @throws UsageError as above.
+  void remove(const std::string& name) const;
   void finish(const std::string& result_json) const { write_text("result.json", result_json); }
 
  private:
+  void check_is_no_input(const std::string& name) const;
+
   std::filesystem::path folder_;
   std::vector<std::string> inputs_;
 };

@@ -20,8 +20,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kDetails =
     R"(Writes into DIR: warped.* (the moving image on the fixed grid), displacement.mha (T(x) - x in mm),
-jacobian.mha, transform.json (for crease warp), pictures/*.png, config.toml and, last, result.json.
+jacobian.mha, transform.json (for crease warp), transform.tfm (for ITK, 3D Slicer and ANTs; rigid and
+affine maps, B-splines of degree 1 to 3), pictures/*.png, config.toml and, last, result.json.
 Physical coordinates in mm (LPS) everywhere; T maps points of the fixed image to the moving image.
+
+How exactly other programs repeat T: by transform.tfm to 1e-9 mm, B-splines within the fixed image's pixels
+(beyond them only their affine part). By displacement.mha to rounding (1e-12 mm) at the centres of pixels;
+between them linear interpolation misses T by up to h^2/8 times the second derivative of T along each
+axis, h the size of a pixel, and near a crease by h/4 times the jump of the slope.
 
 Example: two X-rays with rigid bones and some landmarks
   crease register --fixed monday.png --moving friday.png --spacing 0.2,0.2 --rigid-labels bones.png \

@@ -7,6 +7,7 @@
 #include "Images/Resample.h"
 #include "Registration/Pictures.h"
 #include "Transforms/TransformFile.h"
+#include "Transforms/TransformFileItk.h"
 
 namespace crease {
 namespace {
@@ -111,6 +112,12 @@ void write_results(const OutputFolder& output, const RegisterOptions& options,
   });
   output.write("transform.json",
                [&](const Path& file) { save_transform(*outcome.transform, file); });
+  if (has_itk_equivalent(*outcome.transform)) {
+    output.write("transform.tfm",
+                 [&](const Path& file) { save_itk_transform(*outcome.transform, file); });
+  } else {
+    output.remove("transform.tfm");
+  }
 }
 
 template <int Dim>

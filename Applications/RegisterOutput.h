@@ -24,7 +24,7 @@ Evaluation<Dim> evaluate_outcome(const RegisterOptions& options, const RegisterI
                                  const RegisterOutcome<Dim>& outcome,
                                  const RegisterImages<Dim>& images);
 
-/// warped.*, displacement.mha, jacobian.mha, transform.json.
+/// warped.*, displacement.mha, jacobian.mha, transform.json and, where ITK has the same, transform.tfm.
 template <int Dim>
 void write_results(const OutputFolder& output, const RegisterOptions& options,
                    const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,

@@ -49,6 +49,19 @@ TEST(OutputFolder, ShowsAFileOnlyWhenItIsComplete) {
   EXPECT_EQ(count, 3);  // pictures, a.nii.gz, result.json: nothing half done is left
 }
 
+TEST(OutputFolder, RemovesAnEarlierFileButNoInput) {
+  const testing::TemporaryFolder folder;
+  folder.write("old.tfm", "of another run");
+  const std::string input = folder.write("input.tfm", "mine");
+  const OutputFolder output(folder.path(), {input});
+  output.remove("old.tfm");
+  output.remove("never-there.tfm");
+  EXPECT_FALSE(std::filesystem::exists(folder / "old.tfm"));
+  EXPECT_THAT([&] { output.remove("input.tfm"); },
+              ThrowsMessage<UsageError>(HasSubstr("input.tfm is an input of this run")));
+  EXPECT_TRUE(std::filesystem::exists(input));
+}
+
 TEST(OutputFolder, SaysWhenItCannotBeMade) {
   const testing::TemporaryFolder folder;
   const std::string file = folder.write("file", "");

@@ -8,20 +8,11 @@
 #include "Images/MakeInterpolator.h"
 #include "Images/Pyramid.h"
 #include "Images/Smoothing.h"
+#include "Testing/Benchmarks/Counters.h"
+#include "Testing/Benchmarks/Samples.h"
 
-namespace crease {
+namespace crease::benchmarks {
 namespace {
-
-template <int Dim>
-Image<float, Dim> wavy_image(const std::array<int, Dim>& size) {
-  Raster<Dim> raster;
-  raster.size = size;
-  Image<float, Dim> image(raster);
-  for (std::size_t p = 0; p < image.values().size(); ++p) {
-    image.values()[p] = static_cast<float>(std::sin(0.7 * static_cast<double>(p % 1013)));
-  }
-  return image;
-}
 
 Image<float, 2> image_for(const benchmark::State& state) {
   return wavy_image<2>({static_cast<int>(state.range(0)), static_cast<int>(state.range(1))});
@@ -67,24 +58,17 @@ struct Field {
   std::vector<float> value, inside;
 };
 
-void report(benchmark::State& state, std::int64_t samples) {
-  state.counters["ns_per_sample"] = benchmark::Counter(
-      static_cast<double>(samples) * 1e-9,
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-}
-
 template <int Dim>
 void interpolate(benchmark::State& state, const Image<float, Dim>& image, InterpolationKind kind,
                  bool with_gradient) {
-  set_num_threads(static_cast<int>(state.range(2)));
+  const Threads threads(static_cast<int>(state.range(2)));
   const auto moving = make_interpolator(image, kind);
   Field<Dim> field(image.raster());
   for (auto _ : state) {
     field.evaluate(*moving, with_gradient);
     benchmark::ClobberMemory();
   }
-  report(state, image.raster().num_samples());
-  set_num_threads(0);
+  count_time(state, "per_pixel", image.raster().num_samples(), threads.count());
 }
 
 void BM_CubicValueAndGradient(benchmark::State& state) {
@@ -104,11 +88,10 @@ void BM_CubicValueAndGradient3D(benchmark::State& state) {
 
 template <typename Work>
 void run(benchmark::State& state, Work&& work) {
-  set_num_threads(static_cast<int>(state.range(2)));
+  const Threads threads(static_cast<int>(state.range(2)));
   const auto image = image_for(state);
   for (auto _ : state) benchmark::DoNotOptimize(work(image));
-  report(state, image.raster().num_samples());
-  set_num_threads(0);
+  count_time(state, "per_pixel", image.raster().num_samples(), threads.count());
 }
 
 void BM_Prefilter(benchmark::State& state) {
@@ -147,4 +130,4 @@ BENCHMARK(BM_GaussianSigma2)->Apply(sizes_and_threads);
 BENCHMARK(BM_Percentiles)->Apply(sizes_and_threads);
 
 }  // namespace
-}  // namespace crease
+}  // namespace crease::benchmarks

@@ -9,9 +9,10 @@
 
 #include "Optimizers/EliminationNullSpace.h"
 #include "Optimizers/GaussNewton.h"
+#include "Testing/Benchmarks/Counters.h"
 #include "Testing/Optimizers/Problems.h"
 
-namespace crease {
+namespace crease::benchmarks {
 namespace {
 
 constexpr int kSide = 37;
@@ -46,6 +47,7 @@ void BM_Factor(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(cholesky.factor(H));
   state.counters["nnz(H)"] = static_cast<double>(H.nonZeros());
   state.counters["nnz(L)"] = static_cast<double>(cholesky.num_nonzeros());
+  count_time(state, "per_nonzero", cholesky.num_nonzeros());
   state.counters["supernodal"] = cholesky.is_supernodal() ? 1 : 0;
 }
 BENCHMARK(BM_Factor)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
@@ -284,4 +286,4 @@ BENCHMARK(BM_GaussNewton)
     ->Iterations(1);
 
 }  // namespace
-}  // namespace crease
+}  // namespace crease::benchmarks

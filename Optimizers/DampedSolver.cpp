@@ -87,15 +87,12 @@ DampedSolver::Result DampedSolver::solve_with_scalar_factor(
     return Eigen::Map<const Eigen::VectorXd>(solved.data(), solved.size());
   };
   const int patience = options_.max_cg_iterations * kScalarPatience;
-  bool fresh = false;
-  while (!fresh) {
-    if (!scalar_factor_.has_factor() || scalar_factor_.size() * k_ != A_.cols()) {
-      if (!factor_scalar()) return std::nullopt;
-      fresh = true;
-    }
+  const bool kept = scalar_factor_.has_factor() && scalar_factor_.size() * k_ == A_.cols();
+  if (kept) {
     if (auto x = conjugate_gradients(b, patience, apply_factor)) return x;
-    if (!fresh && !factor_scalar()) return std::nullopt;
   }
+  if (!factor_scalar()) return std::nullopt;
+  if (auto x = conjugate_gradients(b, patience, apply_factor)) return x;
   return solve_direct(b);
 }
 

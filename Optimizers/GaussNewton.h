@@ -16,7 +16,7 @@ struct GaussNewtonOptions {
   double shortening = 0.35;
   /// Keeps analyses and factors from one minimisation to the next of the same kind, one at a time; null: each
   /// starts afresh.
-  std::shared_ptr<DampedSolver> solver;
+  std::shared_ptr<DampedSolver> solver = nullptr;
 };
 
 /// Gauss-Newton with Levenberg-Marquardt damping:  (N^T H N + mu diag) dY = -N^T g.

@@ -44,8 +44,7 @@ Eigen::VectorXd QuadraticMinimizer::minimum(const Eigen::Ref<const Eigen::Vector
   const Eigen::VectorXd rhs = null_space_.apply_transpose(b - pull_of_offset_);
   if (rhs.size() == 0) return stack(null_space_.offset());
   if (!scalar_) return null_space_.expand(factor_.solve(rhs));
-  return null_space_.expand(
-      stack(factor_.solve_columns(as_rows(rhs, null_space_.num_columns()))));
+  return null_space_.expand(stack(factor_.solve_columns(as_rows(rhs, null_space_.num_columns()))));
 }
 
 Eigen::VectorXd minimize_quadratic(const Eigen::SparseMatrix<double>& A,

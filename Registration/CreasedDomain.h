@@ -23,7 +23,7 @@ struct CreasedDomainOptions {
   /// Default half of edge_length: on phantoms of rigid bodies a quarter costs 40 to 90 % more triangles
   /// and changes no error by more than a tenth.
   double edge_length_near_lines = 0;
-  double gradation = 0.8;             ///< growth of the edge length per mm of distance to a line
+  double gradation = 0.8;  ///< growth of the edge length per mm of distance to a line
   /// mm that edges may run off curved lines; default a pixel of the label image, else 1/20 of the edges
   /// near lines. For creases a pixel will do: half of it costs a third more triangles.
   double line_tolerance = 0;

@@ -93,7 +93,7 @@ SearchLevel<Dim> search_level(const ImageLevel<Dim>& level, const AffineMap<Dim>
   SearchLevel<Dim> search;
   MetricInput<Dim> input{level.fixed, level.weights, level.moving, level.moving_mask};
   const Raster<Dim>& raster = level.fixed.raster();
-  keep_samples_inside<Dim>(raster, start, level.moving->raster(), input.weights);
+  keep_samples_inside<Dim>(raster, start, level.moving->raster(), 0, input.weights);
   Point<Dim> sum = Point<Dim>::Zero();
   double weight = 0;
   for (std::int64_t r = 0; r < raster.num_rows(); ++r) {

@@ -177,17 +177,20 @@ double RegistrationRun<Dim>::correlated_samples(std::size_t level) const {
   return parts_.schedule.smooth_finest ? std::pow(8.0 / 3.0, Dim) : 1.0;
 }
 
-/// Samples that the start maps outside the moving image have nothing to be compared with: they do not
-/// count at this level. The choice is kept for the whole level, so that the number of samples never
-/// jumps while the level is optimised.
+/// Samples that a start maps outside the moving image, or to its very border, have nothing to be
+/// compared with: they do not count at this level. All starts are judged by the same samples, and the
+/// choice is kept for the whole level, so that the number of samples never jumps.
 template <int Dim>
-void RegistrationRun<Dim>::choose_samples(std::size_t l, const Phi& start) {
+void RegistrationRun<Dim>::choose_samples(std::size_t l, const std::vector<Phi>& starts) {
+  constexpr double kMargin = 2;  // pixels of the level: about what a start may be off
   if (!parts_.has_images()) return;
   Level& level = levels_[l];
   ImageLevel<Dim>& image = images_[l];
   std::vector<float> weights = image.weights;
-  keep_samples_inside<Dim>(*level.grid, affine_, start.reshaped(Dim, pattern_->size()),
-                           image.moving->raster(), weights);
+  for (const Phi& start : starts) {
+    keep_samples_inside<Dim>(*level.grid, affine_, start.reshaped(Dim, pattern_->size()),
+                             image.moving->raster(), kMargin, weights);
+  }
   double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   const double all = std::accumulate(image.weights.begin(), image.weights.end(), 0.0);
   if (4 * sum < all) {  // a start that is far off: the metric says what is wrong if it stays so
@@ -395,8 +398,7 @@ void RegistrationRun<Dim>::optimise() {
   for (std::size_t l = 0; l < levels_.size() && !cancelled_; ++l) {
     LevelReport level;
     level.shrink = levels_[l].shrink;
-    // A start that throws samples out of the moving image must not profit from it: A alone decides first.
-    choose_samples(l, l == 0 ? Phi(Phi::Zero(null_space_->full_size())) : candidates.front());
+    choose_samples(l, candidates);
     level.terms_before = terms_at(l, candidates.front());
     phi = better_start(l, candidates);
     do {

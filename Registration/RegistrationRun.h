@@ -35,7 +35,7 @@ class RegistrationRun {
   void find_initial_map();
   void make_constraints();
   void make_levels();
-  void choose_samples(std::size_t level, const Phi& start);
+  void choose_samples(std::size_t level, const std::vector<Phi>& starts);
   void collect_energies();
   std::vector<Phi> starts();
   Phi fitted_to_flow(const Phi& near);

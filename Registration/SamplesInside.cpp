@@ -11,7 +11,8 @@ namespace {
 /// Weights of one row; displacement[a][i] may be null.
 template <int Dim>
 void keep_row(const Raster<Dim>& fixed, const AffineMap<Dim>& affine, const Raster<Dim>& moving,
-              std::int64_t r, const std::array<const float*, Dim>& displacement, float* weights) {
+              std::int64_t r, const std::array<const float*, Dim>& displacement, double margin,
+              float* weights) {
   const Matrix<Dim> to_index = moving.point_to_index();
   const Vector<Dim> first = to_index * (affine(fixed.row_start(r)) - moving.origin);
   const Vector<Dim> step = to_index * (affine.linear * fixed.index_to_point().col(0));
@@ -24,7 +25,7 @@ void keep_row(const Raster<Dim>& fixed, const AffineMap<Dim>& affine, const Rast
       index += to_index * u;
     }
     for (int a = 0; a < Dim; ++a) {
-      if (!(index[a] >= 0 && index[a] <= moving.size[a] - 1)) weights[i] = 0;
+      if (!(index[a] >= margin && index[a] <= moving.size[a] - 1 - margin)) weights[i] = 0;
     }
   }
 }
@@ -34,7 +35,7 @@ void keep_row(const Raster<Dim>& fixed, const AffineMap<Dim>& affine, const Rast
 template <int Dim>
 void keep_samples_inside(const BoundGrid<Dim>& grid, const AffineMap<Dim>& affine,
                          const Eigen::Ref<const ControlPoints<Dim>>& phi, const Raster<Dim>& moving,
-                         std::vector<float>& weights) {
+                         double margin, std::vector<float>& weights) {
   const Raster<Dim>& fixed = grid.raster();
   const RowTiles<Dim> tiles(fixed);
   const auto coefficients = grid.prepare(phi);
@@ -49,28 +50,29 @@ void keep_samples_inside(const BoundGrid<Dim>& grid, const AffineMap<Dim>& affin
     }
     tiles.for_each_row(tile, [&](std::int64_t r) {
       grid.map_row(*coefficients, r, out);
-      keep_row<Dim>(fixed, affine, moving, r, displacement, weights.data() + r * fixed.size[0]);
+      keep_row<Dim>(fixed, affine, moving, r, displacement, margin,
+                    weights.data() + r * fixed.size[0]);
     });
   });
 }
 
 template <int Dim>
 void keep_samples_inside(const Raster<Dim>& fixed, const AffineMap<Dim>& affine,
-                         const Raster<Dim>& moving, std::vector<float>& weights) {
+                         const Raster<Dim>& moving, double margin, std::vector<float>& weights) {
   parallel_for(fixed.num_rows(), [&](std::int64_t r) {
-    keep_row<Dim>(fixed, affine, moving, r, {}, weights.data() + r * fixed.size[0]);
+    keep_row<Dim>(fixed, affine, moving, r, {}, margin, weights.data() + r * fixed.size[0]);
   });
 }
 
 template void keep_samples_inside<2>(const BoundGrid<2>&, const AffineMap<2>&,
                                      const Eigen::Ref<const ControlPoints<2>>&, const Raster<2>&,
-                                     std::vector<float>&);
+                                     double, std::vector<float>&);
 template void keep_samples_inside<3>(const BoundGrid<3>&, const AffineMap<3>&,
                                      const Eigen::Ref<const ControlPoints<3>>&, const Raster<3>&,
-                                     std::vector<float>&);
+                                     double, std::vector<float>&);
 template void keep_samples_inside<2>(const Raster<2>&, const AffineMap<2>&, const Raster<2>&,
-                                     std::vector<float>&);
+                                     double, std::vector<float>&);
 template void keep_samples_inside<3>(const Raster<3>&, const AffineMap<3>&, const Raster<3>&,
-                                     std::vector<float>&);
+                                     double, std::vector<float>&);
 
 }  // namespace crease

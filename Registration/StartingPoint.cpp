@@ -7,7 +7,7 @@
 namespace crease {
 namespace {
 
-constexpr int kRenewals = 5;  // of what turns with the solution
+constexpr int kRenewals = 5;       // of what turns with the solution
 constexpr double kSprings = 1e-6;  // of the mean stiffness: makes the minimum unique
 
 /// Springs between all control points that couple, weak beside everything else: they hold what no

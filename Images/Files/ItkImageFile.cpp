@@ -220,7 +220,7 @@ void write_with_itk(const std::filesystem::path& path, ImageFormat format, const
                                                : itk::IOPixelEnum::VECTOR);
     // PNG is always compressed; the lowest level takes a third of the time for a tenth more bytes.
     io->SetUseCompression(format == ImageFormat::kPng);
-    io->SetCompressionLevel(1);
+    if (format == ImageFormat::kPng) io->SetCompressionLevel(1);
     set_whole_region(*io, image);
     io->WriteImageInformation();
     io->Write(image.data.get());

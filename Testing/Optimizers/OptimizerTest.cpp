@@ -343,28 +343,46 @@ TEST(GaussNewton, UnknownsThatTheFunctionDoesNotSeeStayPut) {
   }
 }
 
-// Strongly coupled components: the scalar factor fails and the full one takes its place.
-TEST(GaussNewton, ScalarPreconditionerFallsBackToTheFullFactor) {
+// 20 points of two components each; `coupling` near 1 leaves the sum of the two almost free.
+Eigen::SparseMatrix<double> coupled_pairs(double coupling) {
   Eigen::SparseMatrix<double> A(40, 40);
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < 20; ++i) {
     const double strength = std::pow(10.0, i * 0.2);
     entries.emplace_back(2 * i, 2 * i, strength + 0.01);
     entries.emplace_back(2 * i + 1, 2 * i + 1, strength + 0.01);
-    entries.emplace_back(2 * i + 1, 2 * i, -strength);
+    entries.emplace_back(2 * i + 1, 2 * i, -coupling * strength);
   }
   A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+void expect_minimum(const GaussNewton& optimizer, const Eigen::SparseMatrix<double>& A) {
   std::mt19937 random(1);
   const Eigen::VectorXd solution = testing::random_vector(40, random);
   testing::ConvexFunction function(A, A.selfadjointView<Eigen::Lower>() * solution, 0.0);
   const auto space = make_null_space(NullSpaceKind::kElimination, no_constraints(20, 2), 20);
-  const GaussNewton optimizer({.relative_decrease = 0.0, .relative_gradient = 1e-10},
-                              {.linear_solver = {.kind = LinearSolver::kScalarPreconditionedCg,
-                                                 .cg_tolerance = 1e-8,
-                                                 .max_cg_iterations = 1},
-                               .initial_damping = 0.0});
   const auto result = optimizer.minimize(function, Eigen::VectorXd::Zero(40), space.get());
   EXPECT_LE((result.x - solution).norm(), 1e-5);
+}
+
+const OptimizerOptions kToTheEnd{.relative_decrease = 0.0, .relative_gradient = 1e-10};
+const LinearSolverOptions kImpatient{
+    .kind = LinearSolver::kScalarPreconditionedCg, .cg_tolerance = 1e-8, .max_cg_iterations = 1};
+
+// Strongly coupled components: the scalar factor fails and the full one takes its place.
+TEST(GaussNewton, ScalarPreconditionerFallsBackToTheFullFactor) {
+  const GaussNewton optimizer(kToTheEnd, {.linear_solver = kImpatient, .initial_damping = 0.0});
+  expect_minimum(optimizer, coupled_pairs(1));
+}
+
+TEST(GaussNewton, ScalarFactorOfAnEarlierMinimisationGivesWayToo) {
+  GaussNewtonOptions options{.linear_solver = kImpatient, .initial_damping = 0.0};
+  options.solver = std::make_shared<DampedSolver>(kImpatient, 2);
+  const GaussNewton optimizer(kToTheEnd, options);
+  expect_minimum(optimizer, coupled_pairs(1e-12));
+  EXPECT_EQ(options.solver->num_factorizations(), 1);  // scalar, and good
+  expect_minimum(optimizer, coupled_pairs(1));
 }
 
 // E = x^4/4 - x^2/2 at its maximum-like start: the exact Hessian is negative there.

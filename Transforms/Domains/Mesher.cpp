@@ -335,6 +335,30 @@ void DomainMesher::set_regions(DomainMesh& domain) const {
   }
 }
 
+constexpr double kTriangleTolerance = 0.05;
+
+/// Bisection on the scale of all lengths, from the mesh at scale 1; the count falls like its square.
+void search_scale(const DomainMesher& mesher, const MeshOptions& options, DomainMesh domain,
+                  DomainMesh& best, double& best_error) {
+  double factor = 1, low = 0, high = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < 14; ++step) {
+    const double count = static_cast<double>(domain.mesh.simplices.size());
+    const double error = std::abs(count / options.num_triangles - 1);
+    if (error < best_error) {
+      best_error = error;
+      best = std::move(domain);
+    }
+    if (best_error <= kTriangleTolerance) return;
+    (count > options.num_triangles ? low : high) = factor;
+    double next = factor * std::sqrt(count / options.num_triangles);
+    if (!(next > low && next < high) || step % 4 == 3) {
+      next = std::isinf(high) ? 2 * low : low == 0 ? high / 2 : 0.5 * (low + high);
+    }
+    factor = next;
+    domain = mesher.mesh(scaled(options, factor));
+  }
+}
+
 }  // namespace
 
 DomainMesh mesh_domain(const RegionOfInterest& region, const std::vector<FeatureLine>& lines,
@@ -345,25 +369,15 @@ DomainMesh mesh_domain(const RegionOfInterest& region, const std::vector<Feature
   const DomainMesher mesher(region, lines);
   DomainMesh domain = mesher.mesh(start);
   if (options.num_triangles == 0) return domain;
-  // Bisection on the scale of all lengths; the count falls like its square.
-  double factor = 1, low = 0, high = std::numeric_limits<double>::infinity();
-  double best_error = std::numeric_limits<double>::infinity();
   DomainMesh best;
-  for (int step = 0; step < 30; ++step) {
-    const double count = static_cast<double>(domain.mesh.simplices.size());
-    const double error = std::abs(count / options.num_triangles - 1);
-    if (error < best_error) {
-      best_error = error;
-      best = std::move(domain);
-    }
-    if (best_error <= 0.05) return best;
-    (count > options.num_triangles ? low : high) = factor;
-    double next = factor * std::sqrt(count / options.num_triangles);
-    if (!(next > low && next < high) || step % 4 == 3) {
-      next = std::isinf(high) ? 2 * low : low == 0 ? high / 2 : 0.5 * (low + high);
-    }
-    factor = next;
-    domain = mesher.mesh(scaled(start, factor));
+  double best_error = std::numeric_limits<double>::infinity();
+  // Coarse meshes jump over some counts; another gradation reaches them.
+  for (double gradation : {1.0, 0.8, 1.25, 0.6, 1.6}) {
+    MeshOptions graded = start;
+    graded.gradation *= gradation;
+    search_scale(mesher, graded, std::move(domain), best, best_error);
+    if (best_error <= kTriangleTolerance) return best;
+    domain = mesher.mesh(graded);
   }
   best.warnings.push_back(message("mesh: ", options.num_triangles, " triangles were asked for, ",
                                   best.mesh.simplices.size(), " is the nearest count found."));

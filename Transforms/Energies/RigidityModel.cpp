@@ -85,7 +85,8 @@ void RigidityEnergy<Dim>::make_bodies() {
   std::map<int, std::size_t> of_region;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     std::size_t body = bodies_.size();
-    if (patches_[p].region >= 0) body = of_region.try_emplace(patches_[p].region, body).first->second;
+    if (patches_[p].region >= 0)
+      body = of_region.try_emplace(patches_[p].region, body).first->second;
     if (body == bodies_.size()) bodies_.emplace_back();
     bodies_[body].patches.push_back(static_cast<int>(p));
   }

@@ -152,14 +152,14 @@ Eigen::SparseMatrix<double> mass_matrix(const SplineBasis<Dim>& basis) {
       });
 }
 
-#define CREASE_INSTANTIATE(Dim)                                                                  \
-  template std::vector<PatchRange> group_by_patch(const std::vector<QuadratureElement<Dim>>&);   \
-  template void visit_quadrature(                                                                \
-      const SplineBasis<Dim>&, int, int, const std::function<bool(int, int)>&,                   \
-      const std::function<void(std::vector<QuadratureElement<Dim>>&)>&);                         \
-  template Eigen::SparseMatrix<double> assemble_scalar_matrix(                                   \
-      const SplineBasis<Dim>&, int, int, const ElementFactor<Dim>&,                              \
-      const std::function<bool(int, int)>&);                                                     \
+#define CREASE_INSTANTIATE(Dim)                                                                \
+  template std::vector<PatchRange> group_by_patch(const std::vector<QuadratureElement<Dim>>&); \
+  template void visit_quadrature(                                                              \
+      const SplineBasis<Dim>&, int, int, const std::function<bool(int, int)>&,                 \
+      const std::function<void(std::vector<QuadratureElement<Dim>>&)>&);                       \
+  template Eigen::SparseMatrix<double> assemble_scalar_matrix(                                 \
+      const SplineBasis<Dim>&, int, int, const ElementFactor<Dim>&,                            \
+      const std::function<bool(int, int)>&);                                                   \
   template Eigen::SparseMatrix<double> mass_matrix(const SplineBasis<Dim>&);
 CREASE_INSTANTIATE(2)
 CREASE_INSTANTIATE(3)

@@ -116,7 +116,9 @@ int Arranger::find_vertex(const Point<2>& p, double distance, int end) const {
 void Arranger::add_line(const FeatureLine& line, int number) {
   Chain chain{{}, line.closed, number};
   for (const auto& p : line.points) {
-    const int known = find_vertex(p, tolerance_, num_border_vertices_);
+    // A line that crosses itself, or another one, may have points of both strands in one place.
+    const int known = find_vertex(p, tolerance_, static_cast<int>(vertices_.size()));
+    if (chain.has(known) && known != chain.vertices.back()) ++num_crossings_;
     chain.vertices.push_back(known >= 0 ? known : add_vertex(p));
   }
   chains_.push_back(std::move(chain));

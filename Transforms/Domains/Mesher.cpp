@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <queue>
@@ -36,6 +37,11 @@ MeshOptions completed(const RegionOfInterest& region, MeshOptions options) {
     throw InvalidInput(message("mesh: num_triangles = ", options.num_triangles,
                                " must be between 1 and ", kMostTriangles, ", or 0."));
   }
+  for (const FineDisc& disc : options.fine_discs) {
+    if (disc.centre.allFinite() && disc.radius >= 0 && disc.edge_length > 0) continue;
+    throw InvalidInput(message("mesh: a disc of radius ", disc.radius, " mm with edges of ",
+                               disc.edge_length, " mm; both must be positive."));
+  }
   if (!(options.gradation > 0)) {
     throw InvalidInput(message("mesh: gradation = ", options.gradation, " must be positive."));
   }
@@ -50,6 +56,16 @@ MeshOptions scaled(MeshOptions options, double factor) {
   options.edge_length_near_lines *= factor;
   options.edge_length_in_bodies *= factor;
   return options;
+}
+
+/// The edge length that the discs ask for at p; infinite without any.
+double length_for_discs(const MeshOptions& options, const Point<2>& p) {
+  double length = std::numeric_limits<double>::infinity();
+  for (const FineDisc& disc : options.fine_discs) {
+    const double outside = std::max(0.0, (p - disc.centre).norm() - disc.radius);
+    length = std::min(length, disc.edge_length + options.gradation * outside);
+  }
+  return length;
 }
 
 [[noreturn]] void refuse(double estimate, const MeshOptions& options) {
@@ -167,8 +183,11 @@ class DomainMesher {
   DomainMesh mesh(const MeshOptions& options) const;
 
  private:
-  SizeField size_field(const MeshOptions& options, std::vector<SizeField::Segment> segments) const;
-  void check_size(const SizeField& field, const MeshOptions& options) const;
+  using Lengths = std::function<double(const Point<2>&)>;
+
+  Lengths wanted_lengths(const MeshOptions& options,
+                         std::vector<SizeField::Segment> segments) const;
+  void check_size(const Lengths& lengths, const MeshOptions& options) const;
   void set_chains(const LineArrangement& arrangement, const std::vector<FeatureLine>& prepared,
                   const std::vector<std::vector<int>>& paths, DomainMesh& domain) const;
   void set_regions(DomainMesh& domain) const;
@@ -178,17 +197,22 @@ class DomainMesher {
   BodyRegions bodies_;
 };
 
-SizeField DomainMesher::size_field(const MeshOptions& options,
-                                   std::vector<SizeField::Segment> segments) const {
+/// The edge length wanted at a point: of lines, regions and discs the shortest. The options must stay
+/// alive.
+DomainMesher::Lengths DomainMesher::wanted_lengths(const MeshOptions& options,
+                                                   std::vector<SizeField::Segment> segments) const {
   const bool same = options.edge_length_in_bodies == options.edge_length;
   const auto base = [&](const Point<2>& p) {
     return !same && bodies_.label_at(p) > 0 ? options.edge_length_in_bodies : options.edge_length;
   };
-  return {region_.bounds(), base, std::move(segments), options.gradation};
+  const SizeField field(region_.bounds(), base, std::move(segments), options.gradation);
+  return [field, &options](const Point<2>& p) {
+    return std::min(field(p), length_for_discs(options, p));
+  };
 }
 
 /// Integrates the number of triangles over the region before they are made.
-void DomainMesher::check_size(const SizeField& field, const MeshOptions& options) const {
+void DomainMesher::check_size(const Lengths& lengths, const MeshOptions& options) const {
   constexpr int kSteps = 64;
   const Box<2> box = region_.bounds();
   const double cell = box.size().prod() / (kSteps * kSteps);
@@ -197,7 +221,7 @@ void DomainMesher::check_size(const SizeField& field, const MeshOptions& options
     for (int i = 0; i < kSteps; ++i) {
       const Vector<2> part((i + 0.5) / kSteps, (j + 0.5) / kSteps);
       const Point<2> p = box.lower + box.size().cwiseProduct(part);
-      if (region_.contains(p)) triangles += kTrianglesPerSquare * cell / std::pow(field(p), 2);
+      if (region_.contains(p)) triangles += kTrianglesPerSquare * cell / std::pow(lengths(p), 2);
     }
   }
   if (triangles > kMostTriangles) refuse(triangles, options);
@@ -226,9 +250,8 @@ DomainMesh DomainMesher::mesh(const MeshOptions& options) const {
       segments.push_back({a, b, (b - a).norm()});
     }
   }
-  const SizeField near_lines = size_field(options, segments);
-  check_size(near_lines, options);
-  arranging.border_length = [&](const Point<2>& p) { return near_lines(p); };
+  arranging.border_length = wanted_lengths(options, segments);
+  check_size(arranging.border_length, options);
   const LineArrangement arrangement = arrange(region_, prepared, arranging);
   domain.notes.insert(domain.notes.end(), arrangement.notes.begin(), arrangement.notes.end());
 
@@ -243,8 +266,8 @@ DomainMesh DomainMesher::mesh(const MeshOptions& options) const {
   for (const auto& ring : arrangement.rings) {
     if (signed_area(ring) < 0) input.holes.push_back(point_inside(ring));
   }
-  const SizeField field = size_field(options, std::move(segments));
-  input.largest_edge = [&](const Point<2>& p) { return kLargestEdge * field(p); };
+  const Lengths lengths = wanted_lengths(options, std::move(segments));
+  input.largest_edge = [&](const Point<2>& p) { return kLargestEdge * lengths(p); };
   for (const auto& tip : tips_beside_edges(arrangement)) {
     if (region_.contains(tip)) input.inner_points.push_back(tip);
   }

@@ -8,14 +8,22 @@
 
 namespace crease {
 
+/// A disc in which edges are to be no longer than this; beyond it they grow as away from lines.
+struct FineDisc {
+  Point<2> centre = Point<2>::Zero();
+  double radius = 0;       ///< mm
+  double edge_length = 0;  ///< mm, mean
+};
+
 /// Edge lengths are mean lengths wanted, mm; 0 asks for the default.
 struct MeshOptions {
   double edge_length = 0;             ///< away from lines; default a twelfth of the longer side
   double edge_length_near_lines = 0;  ///< along feature lines; default half of edge_length
   double edge_length_in_bodies =
-      0;                       ///< inside bodies, away from their outline; default edge_length
-  double gradation = 0.4;      ///< growth of the edge length per mm of distance to a line
-  int num_triangles = 0;       ///< > 0: all lengths are scaled until the count is within 5 %
+      0;                   ///< inside bodies, away from their outline; default edge_length
+  double gradation = 0.4;  ///< growth of the edge length per mm of distance to a line
+  std::vector<FineDisc> fine_discs;  ///< finer than the other lengths ask for
+  int num_triangles = 0;  ///< > 0: all lengths but those of discs are scaled until it is within 5 %
   double line_tolerance = 0;   ///< mm that sampled lines may run off; default 1/20 of their edges
   bool resample_lines = true;  ///< false: lines keep their points unless nearer than a quarter edge
 };

@@ -189,6 +189,15 @@ std::vector<FeatureLine> prepared_lines(const RegionOfInterest& region,
                   " % of it is outside the region of interest, or on its border, and cut off."));
     }
     for (auto& piece : pieces) {
+      constexpr double kShortestEdge = 0.25;  // over the edge length: nearer points are merged
+      if (piece.closed && !from_labels &&
+          polyline_length(piece.points, true) < 3 * kShortestEdge * options.edge_length) {
+        throw InvalidInput(message(describe(piece),
+                                   ": the closed line is shorter than three edges of ",
+                                   kShortestEdge * options.edge_length,
+                                   " mm, a quarter of those near lines; use shorter edges or leave "
+                                   "it out."));
+      }
       if (polyline_length(piece.points, piece.closed) < 0.25 * options.edge_length) {
         notes.push_back(
             message(describe(line), ": a piece shorter than a quarter edge is left out."));

@@ -106,6 +106,47 @@ TEST(Mesher, TargetNumberOfTrianglesWithinFivePercent) {
   }
 }
 
+// Both strands have a point in the very place where they cross.
+TEST(Mesher, LineThatCrossesItselfGetsOneVertexThere) {
+  const auto domain =
+      mesh_domain(rectangle(0, 0, 100, 100), {open_line({{20, 20}, {80, 80}, {80, 20}, {20, 80}})},
+                  {.edge_length = 20, .edge_length_near_lines = 5});
+  expect_chains_on_edges(domain);
+  int there = 0;
+  for (const auto& p : domain.mesh.vertices) there += (p - Point<2>(50, 50)).norm() < 1e-9 ? 1 : 0;
+  EXPECT_EQ(there, 1);
+  EXPECT_GT(mesh_figures(domain.mesh).smallest_angle_deg, 20.7);
+}
+
+TEST(Mesher, ClosedLineShorterThanThreeEdgesIsNamed) {
+  FeatureLine dot = closed_line(testing::regular_polygon({50, 50}, 0.5, 6));
+  dot.name = "dot";
+  EXPECT_THAT([&] { mesh_domain(rectangle(0, 0, 100, 100), {dot}, {.edge_length_near_lines = 5}); },
+              ThrowsMessage<InvalidInput>(::testing::AllOf(HasSubstr("feature line dot"),
+                                                           HasSubstr("shorter than three edges"))));
+}
+
+TEST(Mesher, EdgesInDiscsAreAsShortAsAskedFor) {
+  const MeshOptions coarse{.edge_length = 20};
+  MeshOptions fine = coarse;
+  fine.fine_discs = {{.centre = {30, 60}, .radius = 12, .edge_length = 2}};
+  const auto domain = mesh_domain(rectangle(0, 0, 100, 100), {}, fine);
+  const MeshTopology topology(domain.mesh);
+  double sum = 0, count = 0, far = 0;
+  for (const auto& edge : topology.edges()) {
+    const Point<2>& a = domain.mesh.vertices[edge.vertices[0]];
+    const Point<2>& b = domain.mesh.vertices[edge.vertices[1]];
+    const double distance = (0.5 * (a + b) - Point<2>(30, 60)).norm();
+    if (distance < 12) sum += (a - b).norm(), ++count;
+    if (distance > 60) far = std::max(far, (a - b).norm());
+  }
+  EXPECT_NEAR(sum / count, 2, 0.3);
+  EXPECT_GT(far, 15);
+  fine.fine_discs[0].edge_length = 0;
+  EXPECT_THAT([&] { mesh_domain(rectangle(0, 0, 100, 100), {}, fine); },
+              ThrowsMessage<InvalidInput>(HasSubstr("disc")));
+}
+
 TEST(Mesher, SizeInsideBodies) {
   const FeatureLine line = closed_line(testing::regular_polygon({50, 50}, 30, 100));
   MeshOptions options{.edge_length = 20, .edge_length_near_lines = 6, .edge_length_in_bodies = 3};

@@ -75,10 +75,6 @@ void NullSpace::reduce_scalar(const Eigen::SparseMatrix<double>& K,
   reduce(K, 1, reduced);
 }
 
-void NullSpace::use_least_squares_offset() {
-  offset_ += least_squares_correction(constraints_, independent_rows_, dependent_rows_);
-}
-
 std::unique_ptr<NullSpace> make_null_space(NullSpaceKind kind, LinearConstraints constraints,
                                            Eigen::Index m) {
   switch (kind) {

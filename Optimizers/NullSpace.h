@@ -57,9 +57,6 @@ class NullSpace {
   /// Rows of C that make the rank, ascending, and those that depend on them.
   const std::vector<int>& independent_rows() const { return independent_rows_; }
   const std::vector<DependentRow>& dependent_rows() const { return dependent_rows_; }
-  /// Replaces Phi0 by argmin |C Phi - d|, the compromise between rows that contradict each other. N
-  /// stays as it is.
-  void use_least_squares_offset();
 
  protected:
   /// Checks the constraints. @throws InvalidInput as check_constraints().

@@ -1,6 +1,5 @@
 #include "Optimizers/RowDependencies.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseQR>
 #include <algorithm>
@@ -56,16 +55,6 @@ class IndependentRows {
   Eigen::VectorXd weights(const Eigen::VectorXd& c) const {
     return (factor_.solve(c).array() / scales_.array()).matrix();
   }
-  // The smallest Delta with C_ind Delta = rhs.
-  Eigen::MatrixXd smallest_solution(const Eigen::MatrixXd& rhs) const {
-    const Eigen::Index rank = scales_.size();
-    const Eigen::MatrixXd permuted =
-        factor_.colsPermutation().transpose() * (scales_.cwiseInverse().asDiagonal() * rhs);
-    const ColumnSparse R = factor_.matrixR().topLeftCorner(rank, rank);
-    Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(factor_.rows(), rhs.cols());
-    padded.topRows(rank) = R.transpose().triangularView<Eigen::Lower>().solve(permuted);
-    return factor_.matrixQ() * padded;
-  }
 
  private:
   Eigen::VectorXd scales_;
@@ -97,31 +86,6 @@ std::vector<DependentRow> express_dependent_rows(const LinearConstraints& constr
     result.push_back(std::move(found));
   }
   return result;
-}
-
-// With e = C_ind Phi and W the dependent rows' weights, |C Phi - d|^2 = |e - d_ind|^2 + |W e - d_dep|^2
-// is least for e = d_ind + W^T (I + W W^T)^-1 rho.
-RowMatrix least_squares_correction(const LinearConstraints& constraints,
-                                   std::span<const int> independent,
-                                   std::span<const DependentRow> dependent) {
-  const Eigen::Index m = constraints.C.cols();
-  const Eigen::Index k = constraints.d.cols();
-  if (dependent.empty() || independent.empty()) return RowMatrix::Zero(m, k);
-  const auto num_dependent = static_cast<Eigen::Index>(dependent.size());
-  Eigen::MatrixXd W =
-      Eigen::MatrixXd::Zero(num_dependent, static_cast<Eigen::Index>(independent.size()));
-  Eigen::MatrixXd rho(num_dependent, k);
-  for (Eigen::Index j = 0; j < num_dependent; ++j) {
-    const DependentRow& row = dependent[static_cast<std::size_t>(j)];
-    rho.row(j) = row.residual.transpose();
-    for (std::size_t i = 0; i < row.depends_on.size(); ++i) {
-      const auto at = std::lower_bound(independent.begin(), independent.end(), row.depends_on[i]);
-      W(j, at - independent.begin()) = row.weights[i];
-    }
-  }
-  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(num_dependent, num_dependent);
-  const Eigen::MatrixXd shift = W.transpose() * (I + W * W.transpose()).llt().solve(rho);
-  return IndependentRows(constraints, independent).smallest_solution(shift);
 }
 
 }  // namespace crease

@@ -23,10 +23,4 @@ std::vector<DependentRow> express_dependent_rows(const LinearConstraints& constr
                                                  std::span<const int> independent,
                                                  std::span<const int> dependent);
 
-/// The smallest Delta (m x k) that makes Phi0 + Delta the least-squares solution of C Phi = d, where
-/// Phi0 meets the independent rows exactly.
-RowMatrix least_squares_correction(const LinearConstraints& constraints,
-                                   std::span<const int> independent,
-                                   std::span<const DependentRow> dependent);
-
 }  // namespace crease

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "Core/Parallel.h"
+#include "Registration/LandmarkRefinement.h"
 #include "Transforms/Domains/LabelOutlines.h"
 #include "Transforms/Domains/Mesher.h"
 
@@ -21,21 +22,17 @@ void append(std::vector<std::string>& texts, const std::vector<std::string>& mor
   texts.insert(texts.end(), more.begin(), more.end());
 }
 
-}  // namespace
-
-bool CreasedDomain::has_bodies() const {
-  return std::ranges::any_of(mesh.mesh.regions, [](int region) { return region > 0; });
-}
-
-CreasedDomain make_creased_domain(const RegionOfInterest& region,
-                                  const std::vector<FeatureLine>& lines,
-                                  const CreasedDomainOptions& options) {
+CreasedDomain domain_with_discs(const RegionOfInterest& region,
+                                const std::vector<FeatureLine>& lines,
+                                const CreasedDomainOptions& options,
+                                const std::vector<FineDisc>& discs) {
   CreasedDomain domain;
   domain.feature_lines = lines;
   domain.mesh = mesh_domain(region, lines,
                             {.edge_length = options.edge_length,
                              .edge_length_near_lines = options.edge_length_near_lines,
                              .gradation = options.gradation,
+                             .fine_discs = discs,
                              .num_triangles = options.num_triangles,
                              .line_tolerance = options.line_tolerance});
   PlacedKnots knots =
@@ -49,6 +46,21 @@ CreasedDomain make_creased_domain(const RegionOfInterest& region,
   domain.warnings = domain.mesh.warnings;
   append(domain.warnings, domain.plan.warnings);
   return domain;
+}
+
+}  // namespace
+
+bool CreasedDomain::has_bodies() const {
+  return std::ranges::any_of(mesh.mesh.regions, [](int region) { return region > 0; });
+}
+
+CreasedDomain make_creased_domain(const RegionOfInterest& region,
+                                  const std::vector<FeatureLine>& lines,
+                                  const CreasedDomainOptions& options) {
+  const DomainMaker make = [&](const std::vector<FineDisc>& discs) {
+    return domain_with_discs(region, lines, options, discs);
+  };
+  return options.landmarks.empty() ? make({}) : refined_for_landmarks(options.landmarks, make);
 }
 
 CreasedDomain make_creased_domain(const RegionOfInterest& region, const LabelImage<2>& labels,

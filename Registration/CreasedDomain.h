@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "Images/Image.h"
+#include "Registration/Landmarks.h"
 #include "Registration/Registration.h"
 #include "Transforms/Domains/DomainMesh.h"
 #include "Transforms/Domains/KnotPlacement.h"
@@ -31,6 +32,9 @@ struct CreasedDomainOptions {
   /// Whether a rigidity energy will hold bodies rigid: their inner vertices then need no knots apart
   /// from themselves, which makes that energy cheap.
   bool rigid_bodies = true;
+  /// Landmarks to be met exactly: where they contradict each other, or nearly, triangles are divided up to
+  /// four times (LandmarkRefinement). Those with a sigma do not count.
+  Landmarks<2> landmarks;
 };
 
 /// A triangulated region, its feature lines and the triangular B-splines on it.
@@ -47,7 +51,8 @@ struct CreasedDomain {
 
 /// Meshes a region so that the lines run along edges, and puts knots on its vertices so that the spline
 /// may bend sharply along the lines.
-/// @throws InvalidInput for lines that cannot be meshed or options out of range.
+/// @throws InvalidInput for lines that cannot be meshed, options out of range, and landmarks that cannot be
+/// met together.
 CreasedDomain make_creased_domain(const RegionOfInterest& region,
                                   const std::vector<FeatureLine>& lines,
                                   const CreasedDomainOptions& options = {});

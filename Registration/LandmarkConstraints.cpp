@@ -1,17 +1,30 @@
 #include "Registration/LandmarkConstraints.h"
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "Core/Error.h"
+#include "Optimizers/ConstraintCompromise.h"
+#include "Transforms/Splines/TriangularBSplineBasis.h"
 
 namespace crease {
 namespace {
 
-/// "landmarks 3, 4 and 9", counted from 1 as in the file.
+constexpr const char* kRemedies =
+    "; give them a sigma (soft landmarks), use smaller triangles there (--landmarks-conflict "
+    "refine, "
+    "or --mesh-size), or accept the least-squares compromise (--landmarks-conflict compromise)";
+
+/// "landmarks 3, 4 and 9", counted from 1 as in the file; "and 25 more" ends a long list.
 std::string listed(const std::vector<int>& landmarks) {
+  constexpr std::size_t kMost = 12;
   std::string text = landmarks.size() == 1 ? "landmark " : "landmarks ";
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    if (i > 0) text += i + 1 == landmarks.size() ? " and " : ", ";
+    const bool cut = i + 1 == kMost && landmarks.size() > kMost;
+    if (i > 0) text += cut || i + 1 == landmarks.size() ? " and " : ", ";
+    if (cut) return text + message(landmarks.size() - i, " more");
     text += std::to_string(landmarks[i] + 1);
   }
   return text;
@@ -24,11 +37,11 @@ std::string point_text(const Point<Dim>& p) {
   return text + ") mm";
 }
 
+/// Soft landmarks, too: nothing is known of the map out there.
 template <int Dim>
-void refuse_outside(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& basis,
-                    const std::vector<int>& chosen) {
-  for (int j : chosen) {
-    const Point<Dim>& p = landmarks.fixed[static_cast<std::size_t>(j)];
+void refuse_outside(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& basis) {
+  for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
+    const Point<Dim>& p = landmarks.fixed[j];
     if (basis.contains(p)) continue;
     throw InvalidInput(
         message("landmark ", j + 1, ": the fixed point ", point_text<Dim>(p), " lies ",
@@ -89,23 +102,61 @@ std::vector<int> with_dependents(const DependentRow& row, const std::vector<int>
   return landmarks;
 }
 
-std::string conflict_text(const std::vector<DependentRow>& rows, const std::vector<int>& chosen) {
-  std::string text = "the exact landmarks contradict each other: ";
-  for (std::size_t i = 0; i < rows.size() && i < 5; ++i) {
-    if (i > 0) text += "; ";
-    text += message("landmark ", chosen[static_cast<std::size_t>(rows[i].row)] + 1, " misses what ",
-                    listed(with_dependents(rows[i], chosen)), " imply by ", rows[i].residual.norm(),
-                    " mm");
-  }
-  if (rows.size() > 5) text += message("; and ", rows.size() - 5, " more");
-  return text;
+/// Where a landmark is: "(3, 4) mm, in triangle 57".
+template <int Dim>
+std::string place_text(const Point<Dim>& p, const SplineBasis<Dim>& basis) {
+  const std::string text = point_text<Dim>(p);
+  const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis);
+  if (triangular == nullptr) return text;
+  return message(text, ", in ", Dim == 2 ? "triangle " : "tetrahedron ",
+                 triangular->find_simplex(p));
 }
 
-/// Distance of each landmark of the compromise from its partner: root mean square, mm.
-double rms_residual(const NullSpace& null_space) {
-  const RowMatrix residual =
-      null_space.constraints().C * null_space.offset() - null_space.constraints().d;
-  return std::sqrt(residual.squaredNorm() / static_cast<double>(residual.rows()));
+template <int Dim>
+LandmarkContradiction contradiction(const std::vector<DependentRow>& rows,
+                                    const std::vector<int>& chosen, const Landmarks<Dim>& landmarks,
+                                    const SplineBasis<Dim>& basis) {
+  constexpr std::size_t kMost = 5;
+  std::set<int> all;
+  std::string text = "the exact landmarks contradict each other: ";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int landmark = chosen[static_cast<std::size_t>(rows[i].row)];
+    const std::vector<int> others = with_dependents(rows[i], chosen);
+    all.insert(landmark);
+    all.insert(others.begin(), others.end());
+    if (i >= kMost) continue;
+    text += message(i > 0 ? "; landmark " : "landmark ", landmark + 1, " at ",
+                    place_text<Dim>(landmarks.fixed[static_cast<std::size_t>(landmark)], basis),
+                    ", misses what ", listed(others), " imply by ", rows[i].residual.norm(), " mm");
+  }
+  if (rows.size() > kMost) text += message("; and ", rows.size() - kMost, " more");
+  return {{all.begin(), all.end()}, std::move(text)};
+}
+
+/// What the affine map nearest to the displacements d gives the landmarks.
+template <int Dim>
+Eigen::MatrixXd nearest_affine(const Landmarks<Dim>& landmarks, const std::vector<int>& chosen,
+                               const RowMatrix& d) {
+  Eigen::MatrixXd points = Eigen::MatrixXd::Ones(d.rows(), Dim + 1);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    points.row(i).template head<Dim>() = landmarks.fixed[static_cast<std::size_t>(chosen[i])];
+  }
+  return points * points.completeOrthogonalDecomposition().solve(Eigen::MatrixXd(d));
+}
+
+/// A Phi that meets landmarks on average is not to be bent for what they nearly contradict each other in.
+constexpr double kLeastShare = 0.5;
+
+/// The null space with the contradicting landmarks replaced by what they agree on.
+std::unique_ptr<NullSpace> agreed_null_space(const NullSpace& all,
+                                             const LandmarkContradiction& contradicting,
+                                             const std::vector<int>& chosen, NullSpaceKind kind) {
+  std::vector<int> rows;
+  for (int j : contradicting.landmarks) {
+    rows.push_back(
+        static_cast<int>(std::lower_bound(chosen.begin(), chosen.end(), j) - chosen.begin()));
+  }
+  return make_null_space(kind, compromise(all.constraints(), rows, kLeastShare), all.num_rows());
 }
 
 }  // namespace
@@ -122,6 +173,48 @@ std::vector<int> exact_landmarks(const Landmarks<Dim>& landmarks, LandmarkMode m
 }
 
 template <int Dim>
+std::optional<LandmarkContradiction> find_contradiction(const Landmarks<Dim>& landmarks,
+                                                        const SplineBasis<Dim>& basis,
+                                                        LandmarkMode mode) {
+  const std::vector<int> chosen = exact_landmarks(landmarks, mode);
+  const double tolerance = 1e-6 * basis.mean_edge_length();
+  refuse_outside(landmarks, basis);
+  refuse_two_partners(landmarks, chosen, tolerance);
+  if (chosen.empty()) return std::nullopt;
+  const auto null_space = make_null_space(NullSpaceKind::kElimination,
+                                          rows_of(landmarks, basis, AffineMap<Dim>(), chosen),
+                                          basis.num_control_points());
+  const auto rows = classify_dependent_rows(*null_space, tolerance).contradictory;
+  if (rows.empty()) return std::nullopt;
+  return contradiction(rows, chosen, landmarks, basis);
+}
+
+template <int Dim>
+LandmarkStrain landmark_strain(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& basis,
+                               LandmarkMode mode, double most) {
+  const std::vector<int> chosen = exact_landmarks(landmarks, mode);
+  LandmarkStrain strain;
+  if (chosen.empty()) return strain;
+  LinearConstraints rows = rows_of(landmarks, basis, AffineMap<Dim>(), chosen);
+  rows.d -= nearest_affine(landmarks, chosen, rows.d);
+  const double moved = rows.d.rowwise().norm().maxCoeff();
+  if (!(moved > 1e-6 * basis.mean_edge_length())) return strain;
+  // The offset of this null space is the smallest of all solutions.
+  const auto null_space = make_null_space(NullSpaceKind::kQr, rows, basis.num_control_points());
+  const Eigen::VectorXd shift = null_space->offset().rowwise().norm();
+  strain.magnification = shift.maxCoeff() / moved;
+  for (int i = 0; i < rows.C.rows(); ++i) {
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(rows.C, i); entry;
+         ++entry) {
+      if (shift[entry.col()] < most * moved) continue;
+      strain.landmarks.push_back(chosen[static_cast<std::size_t>(i)]);
+      break;
+    }
+  }
+  return strain;
+}
+
+template <int Dim>
 LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmarks,
                                                    const SplineBasis<Dim>& basis,
                                                    const AffineMap<Dim>& affine,
@@ -129,7 +222,7 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
                                                    NullSpaceKind kind) {
   const std::vector<int> chosen = exact_landmarks(landmarks, options.mode);
   const double tolerance = 1e-6 * basis.mean_edge_length();
-  refuse_outside(landmarks, basis, chosen);
+  refuse_outside(landmarks, basis);
   refuse_two_partners(landmarks, chosen, tolerance);
 
   LandmarkConstraints<Dim> result;
@@ -144,16 +237,19 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
                                    "; ignored"));
   }
   if (!classes.contradictory.empty()) {
-    const std::string conflict = conflict_text(classes.contradictory, chosen);
+    const auto found = contradiction(classes.contradictory, chosen, landmarks, basis);
     if (options.conflict == LandmarkConflict::kError) {
-      throw InvalidInput(message(conflict,
-                                 "; give them a sigma (soft landmarks), use smaller triangles "
-                                 "there (--mesh-size), or accept the least-squares compromise "
-                                 "(--landmarks-conflict compromise)"));
+      throw InvalidInput(message(found.text, kRemedies));
     }
-    null_space->use_least_squares_offset();
-    result.notes.push_back(message(conflict, "; met in the least-squares sense, rms distance ",
-                                   rms_residual(*null_space), " mm"));
+    null_space = agreed_null_space(*null_space, found, chosen, kind);
+    result.notes.push_back(message(found.text, "; these ", found.landmarks.size(),
+                                   " landmarks are met in the least-squares sense"));
+  } else if (const auto strain =
+                 landmark_strain(landmarks, basis, options.mode, kLargestLandmarkStrain);
+             strain.magnification > kLargestLandmarkStrain) {
+    result.notes.push_back(message("exact ", listed(strain.landmarks),
+                                   " nearly contradict each other: the map bends ",
+                                   strain.magnification, " times as far as they move", kRemedies));
   }
   result.null_space = std::move(null_space);
   return result;
@@ -161,6 +257,16 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
 
 template std::vector<int> exact_landmarks<2>(const Landmarks<2>&, LandmarkMode);
 template std::vector<int> exact_landmarks<3>(const Landmarks<3>&, LandmarkMode);
+template std::optional<LandmarkContradiction> find_contradiction<2>(const Landmarks<2>&,
+                                                                    const SplineBasis<2>&,
+                                                                    LandmarkMode);
+template std::optional<LandmarkContradiction> find_contradiction<3>(const Landmarks<3>&,
+                                                                    const SplineBasis<3>&,
+                                                                    LandmarkMode);
+template LandmarkStrain landmark_strain<2>(const Landmarks<2>&, const SplineBasis<2>&, LandmarkMode,
+                                           double);
+template LandmarkStrain landmark_strain<3>(const Landmarks<3>&, const SplineBasis<3>&, LandmarkMode,
+                                           double);
 template LandmarkConstraints<2> make_landmark_constraints<2>(const Landmarks<2>&,
                                                              const SplineBasis<2>&,
                                                              const AffineMap<2>&,

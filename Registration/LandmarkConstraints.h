@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,13 +30,45 @@ struct LandmarkConstraints {
   std::vector<std::string> notes;  ///< redundant landmarks, compromises
 };
 
+/// Exact landmarks that splines of a basis cannot meet together.
+struct LandmarkContradiction {
+  std::vector<int> landmarks;  ///< numbers (from 0) of all that take part, ascending
+  std::string text;            ///< names them, where they are, and what is missed, mm
+};
+
 /// Numbers of the landmarks that are to be met exactly: all without a sigma, none in soft mode.
 template <int Dim>
 std::vector<int> exact_landmarks(const Landmarks<Dim>& landmarks, LandmarkMode mode);
 
-/// @throws InvalidInput when a landmark lies outside the domain (with its distance), two share a fixed
-/// point but not their partner, or landmarks contradict each other and the policy is kError; the
-/// message lists the landmarks of the conflict, the residual in mm and the remedies.
+/// The exact landmarks that contradict each other, if any do. The affine map of a run does not matter:
+/// splines contain the affine maps.
+/// @throws InvalidInput when a landmark lies outside the domain (with its distance), or two share a
+/// fixed point but not their partner.
+template <int Dim>
+std::optional<LandmarkContradiction> find_contradiction(const Landmarks<Dim>& landmarks,
+                                                        const SplineBasis<Dim>& basis,
+                                                        LandmarkMode mode);
+
+/// From this magnification on, exact landmarks are said to contradict each other nearly: the map bends out of
+/// all proportion.
+inline constexpr double kLargestLandmarkStrain = 30;
+
+/// Exact landmarks that can be met, but nearly contradict each other.
+struct LandmarkStrain {
+  /// How far control points must move, over how far the landmarks themselves move, both apart from the
+  /// affine map that is nearest to them: a few units where landmarks agree, more and more the more nearly
+  /// they contradict each other. 0 without exact landmarks.
+  double magnification = 0;
+  std::vector<int> landmarks;  ///< numbers (from 0) of those near control points that move too far
+};
+
+/// @param most  the magnification from which on landmarks are named.
+template <int Dim>
+LandmarkStrain landmark_strain(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& basis,
+                               LandmarkMode mode, double most);
+
+/// @throws InvalidInput as find_contradiction(), and when landmarks contradict each other and the
+/// policy is kError; the message lists the landmarks of the conflict, the residual in mm and the remedies.
 template <int Dim>
 LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmarks,
                                                    const SplineBasis<Dim>& basis,
@@ -45,6 +78,16 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
 
 extern template std::vector<int> exact_landmarks<2>(const Landmarks<2>&, LandmarkMode);
 extern template std::vector<int> exact_landmarks<3>(const Landmarks<3>&, LandmarkMode);
+extern template std::optional<LandmarkContradiction> find_contradiction<2>(const Landmarks<2>&,
+                                                                           const SplineBasis<2>&,
+                                                                           LandmarkMode);
+extern template std::optional<LandmarkContradiction> find_contradiction<3>(const Landmarks<3>&,
+                                                                           const SplineBasis<3>&,
+                                                                           LandmarkMode);
+extern template LandmarkStrain landmark_strain<2>(const Landmarks<2>&, const SplineBasis<2>&,
+                                                  LandmarkMode, double);
+extern template LandmarkStrain landmark_strain<3>(const Landmarks<3>&, const SplineBasis<3>&,
+                                                  LandmarkMode, double);
 extern template LandmarkConstraints<2> make_landmark_constraints<2>(const Landmarks<2>&,
                                                                     const SplineBasis<2>&,
                                                                     const AffineMap<2>&,

@@ -216,27 +216,6 @@ TEST_P(EveryNullSpace, ReportsContradictionsWithTheirResidual) {
   EXPECT_NEAR(classes.contradictory[0].residual.norm(), 5.0, 1e-12);
 }
 
-TEST_P(EveryNullSpace, CompromiseIsTheLeastSquaresSolution) {
-  auto constraints = testing::landmark_constraints(8, 6, 2, 5);
-  Eigen::MatrixXd combination = Eigen::MatrixXd::Zero(2, 6);
-  combination(0, 1) = 1.0;
-  combination(1, 2) = 0.4;
-  combination(1, 3) = 0.6;
-  Eigen::MatrixXd shift(2, 2);
-  shift << 3.0, -4.0, 1.0, 2.0;
-  testing::append_dependent_rows(constraints, combination, shift);
-  const auto space = make(constraints);
-  const Eigen::MatrixXd N = scalar_basis(*space);
-  space->use_least_squares_offset();
-  const Eigen::MatrixXd dense = constraints.C;
-  const Eigen::MatrixXd best =
-      dense * dense.completeOrthogonalDecomposition().solve(Eigen::MatrixXd(constraints.d));
-  EXPECT_LE(max_abs(dense * space->offset() - best), 1e-12);
-  EXPECT_EQ(max_abs(scalar_basis(*space) - N), 0.0);
-  // The repeated landmark is met half way.
-  EXPECT_NEAR((dense * space->offset() - constraints.d).row(1).norm(), 2.5, 1e-12);
-}
-
 TEST_P(EveryNullSpace, WithoutConstraintsIsTheIdentity) {
   const auto space = make_null_space(GetParam(), no_constraints(10, 3), 10);
   EXPECT_EQ(space->rank(), 0);

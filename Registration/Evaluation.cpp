@@ -238,25 +238,31 @@ MatchEvaluation evaluate_match(const EvaluationInput<Dim>& input, const Mask<Dim
                                     raster, identity, missing);
   const auto before = resample(*moving, raster, identity, missing);
   const auto after = resample(*moving, raster, row_map(*input.displacement), missing);
-  Products products_before, products_after;
+  Products products_before, products_after, all_after;
   for (std::int64_t i = 0; i < raster.num_samples(); ++i) {
     const double f = fixed.values()[i], b = before.values()[i], a = after.values()[i];
-    if (!counted.values()[i] || !std::isfinite(f + b + a)) continue;
+    if (!counted.values()[i] || !std::isfinite(f + a)) continue;
+    all_after.add(f, a);
+    if (!std::isfinite(b)) continue;
     products_before.add(f, b);
     products_after.add(f, a);
   }
-  if (products_before.count == 0) {
+  if (all_after.count == 0) {
     throw InvalidInput(message("evaluation: the fixed image, ", describe(input.fixed->raster()),
                                ", and the moving image, ", describe(input.moving->raster()),
                                ", share no sample with the displacement, ", describe(raster)));
   }
   MatchEvaluation match;
-  match.samples = static_cast<std::int64_t>(products_before.count);
-  match.ssd_before = products_before.ssd;
+  const bool apart = products_before.count == 0;  // before
+  if (apart) products_after = all_after;
+  match.samples = static_cast<std::int64_t>(products_after.count);
+  match.ssd_before = apart ? missing : products_before.ssd;
   match.ssd_after = products_after.ssd;
-  match.ncc_before = products_before.ncc();
+  match.ncc_before = apart ? missing : products_before.ncc();
   match.ncc_after = products_after.ncc();
-  if (match.ssd_before > 0) {
+  if (apart) {
+    match.ssd_reduction_percent = missing;
+  } else if (match.ssd_before > 0) {
     match.ssd_reduction_percent = 100 * (1 - match.ssd_after / match.ssd_before);
   }
   return match;

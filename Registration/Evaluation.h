@@ -50,7 +50,7 @@ struct JacobianEvaluation {
 };
 
 /// Fixed against moving image, before (T = identity) and after, over the samples that are inside
-/// the moving image both times.
+/// the moving image both times. Images that do not overlap before have NaN there, and for the reduction.
 struct MatchEvaluation {
   std::int64_t samples = 0;
   double ssd_before = 0, ssd_after = 0;  ///< sums of squared differences

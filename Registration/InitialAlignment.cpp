@@ -9,6 +9,7 @@
 
 #include "Core/Error.h"
 #include "Images/CubicBSplineInterpolator.h"
+#include "Images/IntensityRange.h"
 #include "Images/Moments.h"
 #include "Images/Pyramid.h"
 #include "Metrics/SumOfSquaredDifferences.h"
@@ -57,24 +58,6 @@ std::string box_text(const Box<Dim>& box) {
   const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "(", ")");
   return message(box.lower.transpose().format(row), " to ", box.upper.transpose().format(row),
                  " mm");
-}
-
-template <int Dim>
-void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
-                     const AffineMap<Dim>& map) {
-  Box<Dim> mapped;
-  const Box<Dim> box = fixed.bounds();
-  for (int corner = 0; corner < (1 << Dim); ++corner) {
-    Point<Dim> p = box.lower;
-    for (int a = 0; a < Dim; ++a) {
-      if (corner >> a & 1) p[a] = box.upper[a];
-    }
-    mapped.add(map(p));
-  }
-  if (mapped.intersects(moving.bounds())) return;
-  throw InvalidInput(message("the images do not overlap: the fixed image covers ", box_text(mapped),
-                             " after the start, the moving image ", box_text(moving.bounds()),
-                             "; check their origins and directions, or start with --init centres"));
 }
 
 /// The metric of one level of the pyramid, in the frame of its search.
@@ -214,12 +197,51 @@ double rotation_angle_deg(const Matrix<Dim>& linear) {
 }  // namespace
 
 template <int Dim>
+void require_contrast(const Image<float, Dim>& image, const Mask<Dim>* mask,
+                      const std::string& which) {
+  const bool empty_mask =
+      mask != nullptr && std::ranges::none_of(mask->values(), [](auto set) { return set != 0; });
+  if (empty_mask) {
+    throw InvalidInput(message("the mask of the ", which,
+                               " image is empty: no pixel of the image counts; set those that "
+                               "count to 1"));
+  }
+  const IntensityRange range = intensity_range(image, mask);
+  if (!range.constant()) return;
+  throw InvalidInput(message("the ", which, " image is constant (", range.lower, ")",
+                             mask == nullptr ? "" : " inside its mask",
+                             "; there is nothing to register"));
+}
+
+template <int Dim>
+void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
+                     const AffineMap<Dim>& map) {
+  Box<Dim> mapped;
+  const Box<Dim> box = fixed.bounds();
+  for (int corner = 0; corner < (1 << Dim); ++corner) {
+    Point<Dim> p = box.lower;
+    for (int a = 0; a < Dim; ++a) {
+      if (corner >> a & 1) p[a] = box.upper[a];
+    }
+    mapped.add(map(p));
+  }
+  if (mapped.intersects(moving.bounds())) return;
+  throw InvalidInput(message("the images do not overlap: the fixed image covers ", box_text(mapped),
+                             " after the start, the moving image ", box_text(moving.bounds()),
+                             "; check their origins and directions, or start with --init centres"));
+}
+
+template <int Dim>
 Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
                      const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
                      const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
-                     const RegistrationCallback& progress) {
+                     const RegistrationCallback& progress,
+                     const std::optional<AffineMap<Dim>>& given) {
+  require_contrast(fixed, fixed_mask, "fixed");
+  require_contrast(moving, moving_mask, "moving");
   Alignment<Dim> result;
-  result.map = start_map(fixed, moving, fixed_mask, moving_mask, landmarks, options);
+  result.map =
+      given ? *given : start_map(fixed, moving, fixed_mask, moving_mask, landmarks, options);
   require_overlap(fixed.raster(), moving.raster(), result.map);
   const AffineMap<Dim> start = result.map;
   const int largest = *std::max_element(fixed.size().begin(), fixed.size().end());
@@ -238,7 +260,7 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
         break;
       }
       int& evaluations = result.report.evaluations;
-      if (l == 0 && options.start != AlignmentStart::kLandmarks) {
+      if (l == 0 && !given && options.start != AlignmentStart::kLandmarks) {
         result.map = coarse_search(level, result.map, options.try_angles, evaluations);
       }
       const bool rigid = options.search == AlignmentSearch::kRigid;
@@ -258,11 +280,16 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
   return result;
 }
 
-template Alignment<2> align<2>(const Image<float, 2>&, const Image<float, 2>&, const Mask<2>*,
-                               const Mask<2>*, const Landmarks<2>&, const AlignmentOptions&,
-                               const RegistrationCallback&);
-template Alignment<3> align<3>(const Image<float, 3>&, const Image<float, 3>&, const Mask<3>*,
-                               const Mask<3>*, const Landmarks<3>&, const AlignmentOptions&,
-                               const RegistrationCallback&);
+#define CREASE_INSTANTIATE(Dim)                                                                 \
+  template Alignment<Dim> align<Dim>(const Image<float, Dim>&, const Image<float, Dim>&,        \
+                                     const Mask<Dim>*, const Mask<Dim>*, const Landmarks<Dim>&, \
+                                     const AlignmentOptions&, const RegistrationCallback&,      \
+                                     const std::optional<AffineMap<Dim>>&);                     \
+  template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,               \
+                                      const std::string&);                                      \
+  template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&, const AffineMap<Dim>&);
+CREASE_INSTANTIATE(2)
+CREASE_INSTANTIATE(3)
+#undef CREASE_INSTANTIATE
 
 }  // namespace crease

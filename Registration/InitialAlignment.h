@@ -42,18 +42,38 @@ struct Alignment {
 ///
 /// @param landmarks  may be empty; two (rigid) or three (affine) and more replace the start by their
 ///                   least-squares fit when the start asks for landmarks.
-/// @throws InvalidInput when the images do not overlap after the start; the message names both boxes.
+/// @param given      the start, in place of the one that the options name.
+/// @throws InvalidInput when an image is constant in its mask, or when the images do not overlap after the
+/// start; the message names the image, or both boxes.
 template <int Dim>
 Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
                      const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
                      const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
-                     const RegistrationCallback& progress = {});
+                     const RegistrationCallback& progress = {},
+                     const std::optional<AffineMap<Dim>>& given = std::nullopt);
 
-extern template Alignment<2> align<2>(const Image<float, 2>&, const Image<float, 2>&,
-                                      const Mask<2>*, const Mask<2>*, const Landmarks<2>&,
-                                      const AlignmentOptions&, const RegistrationCallback&);
-extern template Alignment<3> align<3>(const Image<float, 3>&, const Image<float, 3>&,
-                                      const Mask<3>*, const Mask<3>*, const Landmarks<3>&,
-                                      const AlignmentOptions&, const RegistrationCallback&);
+/// @throws InvalidInput when all pixels in the mask (null: all) have one value, or the mask is empty.
+/// @param which  "fixed" or "moving", for the message.
+template <int Dim>
+void require_contrast(const Image<float, Dim>& image, const Mask<Dim>* mask,
+                      const std::string& which);
+
+/// @throws InvalidInput when the map carries the fixed image to a place where the moving one is not.
+template <int Dim>
+void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
+                     const AffineMap<Dim>& map);
+
+#define CREASE_DECLARE(Dim)                                                                   \
+  extern template Alignment<Dim> align<Dim>(                                                  \
+      const Image<float, Dim>&, const Image<float, Dim>&, const Mask<Dim>*, const Mask<Dim>*, \
+      const Landmarks<Dim>&, const AlignmentOptions&, const RegistrationCallback&,            \
+      const std::optional<AffineMap<Dim>>&);                                                  \
+  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,      \
+                                             const std::string&);                             \
+  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,           \
+                                            const AffineMap<Dim>&);
+CREASE_DECLARE(2)
+CREASE_DECLARE(3)
+#undef CREASE_DECLARE
 
 }  // namespace crease

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "Core/Error.h"
+#include "Images/ImageFile.h"
 #include "Metrics/SumOfSquaredDifferences.h"
 #include "Registration/RegistrationParts.h"
 #include "Registration/RegistrationRun.h"
@@ -45,6 +46,8 @@ Registration<Dim>::Registration(Image<float, Dim> fixed, Image<float, Dim> movin
     throw InvalidInput(
         message("registration: the ", fixed.empty() ? "fixed" : "moving", " image is empty"));
   }
+  check_finite(fixed, "registration: the fixed image");
+  check_finite(moving, "registration: the moving image");
   parts_->fixed = std::move(fixed);
   parts_->moving = std::move(moving);
 }
@@ -149,6 +152,13 @@ Registration<Dim>& Registration<Dim>::schedule(Schedule schedule) {
 
 template <int Dim>
 RegistrationResult<Dim> Registration<Dim>::run(const RegistrationCallback& progress) const {
+  if (parts_->has_images()) {
+    require_contrast(*parts_->fixed, parts_->fixed_mask_pointer(), "fixed");
+    require_contrast(*parts_->moving, parts_->moving_mask_pointer(), "moving");
+    if (parts_->initial) {
+      require_overlap(parts_->fixed->raster(), parts_->moving->raster(), *parts_->initial);
+    }
+  }
   return RegistrationRun<Dim>(*parts_, progress).execute();
 }
 

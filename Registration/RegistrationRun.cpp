@@ -344,6 +344,18 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::add_round(LevelReport& 
   return std::move(round.x);
 }
 
+/// Coarse levels may lead astray: no result is worse than the start.
+template <int Dim>
+void RegistrationRun<Dim>::keep_better(LevelReport& level, const Phi& start, Phi& phi) {
+  const auto cost = objective(levels_.back());
+  const double at_start = cost->evaluate(start, nullptr, nullptr);
+  const auto terms = cost->terms();
+  if (at_start >= cost->evaluate(phi, nullptr, nullptr)) return;
+  phi = start;
+  level.terms_after = terms;
+  level.stopped_because = result_.stopped_because = "no better map than the start was found";
+}
+
 /// Balances bending against the noise that the level's end shows, and bends more where the map folds.
 /// Returns whether the level is worth another round.
 template <int Dim>
@@ -393,6 +405,7 @@ template <int Dim>
 void RegistrationRun<Dim>::optimise() {
   tell("start", 0, 0, 0);
   std::vector<Phi> candidates = starts();
+  const Phi start = candidates.front();
   add_time("start");
   Phi phi;
   for (std::size_t l = 0; l < levels_.size() && !cancelled_; ++l) {
@@ -405,6 +418,7 @@ void RegistrationRun<Dim>::optimise() {
       phi = add_round(level, optimise_level(l, phi, optimizer_of(l)));
       level.terms_after = terms_at(l, phi);
     } while (!cancelled_ && renew_bending_weight(l, level, phi));
+    if (l + 1 == levels_.size()) keep_better(level, start, phi);
     result_.levels.push_back(std::move(level));
     candidates = {phi};
   }

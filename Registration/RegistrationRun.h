@@ -44,6 +44,7 @@ class RegistrationRun {
   std::map<std::string, double> terms_at(std::size_t level, const Phi& phi);
   Phi add_round(LevelReport& level, OptimizerResult round);
   double correlated_samples(std::size_t level) const;
+  void keep_better(LevelReport& level, const Phi& start, Phi& phi);
   bool renew_bending_weight(std::size_t l, const LevelReport& level, const Phi& phi);
   bool folds(const Phi& phi) const;
   OptimizerResult optimise_level(std::size_t level, const Phi& start,

@@ -70,7 +70,8 @@ class WeightRange {
 
  private:
   std::mutex mutex_;
-  double smallest_ = 0, largest_ = 1;
+  double smallest_ = std::numeric_limits<double>::infinity();
+  double largest_ = -std::numeric_limits<double>::infinity();
   bool finite_ = true;
 };
 

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kTolerance = 1e-9;  // of a span
 
+constexpr double kMostSpans = 2e6;
+
 template <int Dim>
 const TensorLattice<Dim>& checked(const TensorLattice<Dim>& lattice, int degree) {
   if (degree < 1 || degree > kMaxTensorDegree) {
@@ -116,6 +118,13 @@ TensorLattice<Dim> covering_lattice(const Raster<Dim>& raster, double span_size_
   TensorLattice<Dim> lattice;
   lattice.origin = raster.point(Vector<Dim>::Constant(-0.5));
   lattice.direction = raster.direction;
+  const double count = static_cast<double>(raster.num_samples()) * raster.sample_volume() /
+                       std::pow(span_size_mm, Dim);
+  if (count > kMostSpans) {
+    throw InvalidInput(message("covering_lattice: knot spans of ", span_size_mm,
+                               " mm would be about ", count, "; at most ", kMostSpans,
+                               " are possible: choose larger spans."));
+  }
   for (int a = 0; a < Dim; ++a) {
     const double extent = raster.size[a] * raster.spacing[a];
     lattice.spans[a] = std::max(1, static_cast<int>(std::lround(extent / span_size_mm)));

@@ -23,22 +23,56 @@ void write_bytes(const fs::path& file, const std::string& text) {
   }
 }
 
+/// Removes what a run that was killed left behind: half-written files, and folders of image writers.
+void remove_unfinished(const fs::path& folder, std::error_code& error) {
+  std::vector<fs::path> unfinished;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename().string().starts_with(".crease-")) unfinished.push_back(entry);
+  }
+  for (const fs::path& path : unfinished) fs::remove_all(path, error);
+}
+
+/// The text with the user's name of a file in place of the temporary one.
+std::string with_own_name(std::string text, const fs::path& temporary, const fs::path& file) {
+  if (const auto at = text.find(temporary.string()); at != std::string::npos) {
+    text.replace(at, temporary.string().size(), file.string());
+  }
+  return text;
+}
+
 }  // namespace
+
+void check_output_file(const std::string& option, const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) {
+    throw UsageError(message("--", option, " ", file.string(), ": this is a folder; name a file."));
+  }
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) {
+    throw UsageError(message("--", option, " ", file.string(), ": there is no folder ",
+                             folder.string(), "; make it first."));
+  }
+}
 
 void write_file(const fs::path& file, const std::function<void(const fs::path&)>& write) {
   const fs::path temporary = file.parent_path() / (kTemporaryPrefix + file.filename().string());
+  struct Remover {
+    const fs::path& path;
+    ~Remover() {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+    }
+  } const remover{temporary};
   try {
     write(temporary);
     fs::rename(temporary, file);
   } catch (const fs::filesystem_error& error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
     throw FileError(message(file.string(), ": cannot be written: ", error.code().message(),
                             "; check the folder's rights and the space left."));
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw;
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(with_own_name(error.what(), temporary, file));
+  } catch (const FileError& error) {
+    throw FileError(with_own_name(error.what(), temporary, file));
   }
 }
 
@@ -55,14 +89,20 @@ OutputFolder::OutputFolder(fs::path folder, std::vector<std::string> inputs)
                              error ? error.message() : "a file of that name exists", "."));
   }
   fs::remove(folder_ / "result.json", error);
-  if (!error) {
-    for (const auto& entry : fs::directory_iterator(folder_, error)) {
-      if (entry.path().filename().string().starts_with(kTemporaryPrefix)) fs::remove(entry, error);
-    }
+  if (!error) remove_unfinished(folder_, error);
+  if (!error && fs::is_directory(folder_ / "pictures")) {
+    remove_unfinished(folder_ / "pictures", error);
   }
   if (error) {
     throw UsageError(message("--output ", folder_.string(),
                              ": an earlier result cannot be removed: ", error.message(), "."));
+  }
+  const fs::path probe = file(std::string(kTemporaryPrefix) + "probe");
+  const bool writable = std::ofstream(probe).is_open();
+  fs::remove(probe, error);
+  if (!writable) {
+    throw UsageError(message("--output ", folder_.string(),
+                             ": nothing can be written there; check the folder's rights."));
   }
 }
 

@@ -7,8 +7,13 @@
 
 namespace crease {
 
+/// Refuses a path that no file can be written to, before any work is done for it.
+/// @throws UsageError naming the option when its folder does not exist or the path is a folder itself.
+void check_output_file(const std::string& option, const std::filesystem::path& file);
+
 /// Lets `write` make a file under a temporary name beside it, with the same extension, and renames it:
 /// a file under its own name is always complete.
+/// @throws FileError naming the file when it cannot be written.
 void write_file(const std::filesystem::path& file,
                 const std::function<void(const std::filesystem::path& temporary)>& write);
 
@@ -21,7 +26,7 @@ class OutputFolder {
  public:
   /// Makes the folder where it is missing.
   /// @param inputs  files that this run reads: they are never overwritten.
-  /// @throws UsageError when the folder cannot be made.
+  /// @throws UsageError when the folder cannot be made or written to.
   explicit OutputFolder(std::filesystem::path folder, std::vector<std::string> inputs = {});
 
   std::filesystem::path file(const std::string& name) const { return folder_ / name; }

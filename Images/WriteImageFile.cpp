@@ -56,7 +56,11 @@ void write_raw(const std::filesystem::path& path, ImageFormat format, const RawI
     } else {
       write_with_itk(plain, format, raw);
     }
-    check_file(plain, format);  // a full disk may leave half a file
+    try {
+      check_file(plain, format);
+    } catch (const FileError&) {
+      fail(path, "only a part of the file could be written; is the disk full?");
+    }
     if (plain != temporary) std::filesystem::rename(plain, temporary);
   });
 }

@@ -12,9 +12,11 @@
 
 #include <algorithm>
 #include <cstdarg>
+#include <iostream>
 #include <limits>
 #include <mutex>
 #include <new>
+#include <optional>
 
 #include "Core/Error.h"
 #include "Images/Files/FileBytes.h"
@@ -163,6 +165,23 @@ void set_whole_region(itk::ImageIOBase& io, const RawImage& image) {
   io.SetIORegion(region);
 }
 
+/// Keeps MetaIO's own words on a full disk off the error stream, one writer at a time.
+class QuietErrorStream {
+ public:
+  QuietErrorStream() : lock_(mutex()), buffer_(std::cerr.rdbuf(nullptr)) {}
+  ~QuietErrorStream() { std::cerr.rdbuf(buffer_); }
+  QuietErrorStream(const QuietErrorStream&) = delete;
+  QuietErrorStream& operator=(const QuietErrorStream&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex instance;
+    return instance;
+  }
+  std::lock_guard<std::mutex> lock_;
+  std::streambuf* buffer_;
+};
+
 /// Calls work() and turns what ITK throws into a FileError.
 template <typename Work>
 void guarded(const std::filesystem::path& path, const char* doing, Work&& work) {
@@ -222,6 +241,8 @@ void write_with_itk(const std::filesystem::path& path, ImageFormat format, const
     io->SetUseCompression(format == ImageFormat::kPng);
     if (format == ImageFormat::kPng) io->SetCompressionLevel(1);
     set_whole_region(*io, image);
+    std::optional<QuietErrorStream> quiet;
+    if (format == ImageFormat::kMetaImage) quiet.emplace();
     io->WriteImageInformation();
     io->Write(image.data.get());
   });

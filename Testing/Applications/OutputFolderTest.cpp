@@ -16,10 +16,15 @@ TEST(OutputFolder, RemovesAnEarlierResultAndUnfinishedFiles) {
   const testing::TemporaryFolder folder;
   folder.write("result.json", "{}");
   folder.write(".crease-unfinished-warped.mha", "half");
+  folder.write("pictures/.crease-unfinished-grid.png", "half");
+  folder.write(".crease-aB3dEf/jacobian.mha", "half");  // of an image writer
   folder.write("mine.txt", "kept");
   const OutputFolder output(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / "result.json"));
-  EXPECT_FALSE(std::filesystem::exists(folder / ".crease-unfinished-warped.mha"));
+  for (const char* name : {".crease-unfinished-warped.mha", ".crease-aB3dEf",
+                           "pictures/.crease-unfinished-grid.png"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
   EXPECT_TRUE(std::filesystem::exists(folder / "mine.txt"));
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace crease {
@@ -115,9 +116,11 @@ std::string summary(const Evaluation<Dim>& evaluation) {
                         fmt::format("label {}", label.label), label.dice, label.hausdorff_95_mm);
   }
   if (evaluation.match) {
-    text += fmt::format("{:<22} SSD {:.2f} % less, NCC {:.4f} -> {:.4f}\n", "images",
-                        evaluation.match->ssd_reduction_percent, evaluation.match->ncc_before,
-                        evaluation.match->ncc_after);
+    const MatchEvaluation& match = *evaluation.match;
+    text += std::isnan(match.ncc_before)
+                ? fmt::format("{:<22} NCC {:.4f}; no overlap before\n", "images", match.ncc_after)
+                : fmt::format("{:<22} SSD {:.2f} % less, NCC {:.4f} -> {:.4f}\n", "images",
+                              match.ssd_reduction_percent, match.ncc_before, match.ncc_after);
   }
   return text;
 }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,9 +13,11 @@
 #include "Applications/RunOptions.h"
 #include "Applications/RunReport.h"
 #include "Applications/TransformInput.h"
+#include "Geometry/SurfaceMeshFile.h"
 #include "Images/ImageFile.h"
 #include "Registration/Landmarks.h"
 #include "Transforms/CompositeTransform.h"
+#include "Transforms/Domains/CsvTable.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 #include "Transforms/Domains/RegionOfInterest.h"
 #include "Transforms/SplineTransform.h"
@@ -207,21 +211,96 @@ FileInfo region_info(const std::string& file) {
   return result;
 }
 
+/// Places of one image: a table for `crease warp --points`, or a list of 3D Slicer.
+FileInfo points_info(const std::vector<Point<3>>& points, int dimension) {
+  Box<3> box;
+  for (const Point<3>& p : points) box.add(p);
+  const auto list = [&](const Point<3>& p) {
+    return std::vector<double>(p.begin(), p.begin() + dimension);
+  };
+  FileInfo result;
+  result.figures = {{"kind", "points"}, {"dimension", dimension}, {"count", points.size()}};
+  result.text = fmt::format("{} points, {}D", points.size(), dimension);
+  if (!points.empty()) {
+    result.figures["lower_mm"] = list(box.lower);
+    result.figures["upper_mm"] = list(box.upper);
+    result.text +=
+        fmt::format(", from ({}) to ({}) mm", numbers_text(box.lower.data(), dimension, ", "),
+                    numbers_text(box.upper.data(), dimension, ", "));
+  }
+  result.text += "\n";
+  return result;
+}
+
+FileInfo point_table_info(const std::string& file) {
+  const CsvTable table(file);
+  const bool flat = !table.has_column("z");
+  std::vector<Point<3>> points;
+  for (int row = 0; row < table.num_rows(); ++row) {
+    points.emplace_back(table.number(row, "x"), table.number(row, "y"),
+                        flat ? 0 : table.number(row, "z"));
+  }
+  return points_info(points, flat ? 2 : 3);
+}
+
+/// A list of points, or curves.
+FileInfo slicer_info(const std::string& file) {
+  std::ifstream stream(file);
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const bool curves = has_ending(file, ".json") && text.find("\"Fiducial\"") == std::string::npos;
+  if (curves) return feature_line_info(file);
+  return points_info(read_slicer_landmarks<3>(file, file).fixed, 3);
+}
+
 FileInfo table_info(const std::string& file) {
   if (has_csv_column(file, "fixed_z")) return landmark_info<3>(file);
   if (has_csv_column(file, "fixed_x")) return landmark_info<2>(file);
   if (has_csv_column(file, "line")) return feature_line_info(file);
   if (has_csv_column(file, "ring")) return region_info(file);
-  throw InvalidInput(message(file,
-                             ": the table has neither landmarks (fixed_x,fixed_y,...), nor feature "
-                             "lines (line,x,y), nor a region of interest (ring,x,y)."));
+  if (has_csv_column(file, "x")) return point_table_info(file);
+  throw InvalidInput(
+      message(file,
+              ": the table has neither landmarks (fixed_x,fixed_y,...), nor feature "
+              "lines (line,x,y), nor a region of interest (ring,x,y), nor points (x,y)."));
+}
+
+FileInfo mesh_info(const std::string& file) {
+  const SurfaceMesh mesh = read_surface_mesh(file);
+  const SurfaceTopology topology = surface_topology(mesh);
+  Box<3> box;
+  for (const Point<3>& p : mesh.vertices) box.add(p);
+  const auto list = [](const Point<3>& p) { return std::vector<double>(p.begin(), p.end()); };
+  FileInfo result;
+  result.figures = {{"kind", "mesh"},
+                    {"vertices", mesh.vertices.size()},
+                    {"faces", mesh.faces.size()},
+                    {"edges", topology.edges},
+                    {"components", topology.components},
+                    {"boundary_loops", topology.boundary_loops},
+                    {"non_manifold_edges", topology.non_manifold_edges},
+                    {"euler", topology.euler},
+                    {"genus", topology.genus < 0 ? Json() : Json(topology.genus)},
+                    {"lower_mm", list(box.lower)},
+                    {"upper_mm", list(box.upper)}};
+  result.text = fmt::format(
+      "mesh, {} vertices, {} faces, from ({}) to ({}) mm\n"
+      "{} component{}, {} boundary loop{}, Euler characteristic {}, {}\n",
+      mesh.vertices.size(), mesh.faces.size(), numbers_text(box.lower.data(), 3, ", "),
+      numbers_text(box.upper.data(), 3, ", "), topology.components,
+      topology.components == 1 ? "" : "s", topology.boundary_loops,
+      topology.boundary_loops == 1 ? "" : "s", topology.euler,
+      topology.genus < 0
+          ? fmt::format("{} edges with three faces or more", topology.non_manifold_edges)
+          : fmt::format("genus {}", topology.genus));
+  return result;
 }
 
 FileInfo file_info(const std::string& file) {
   if (!std::filesystem::exists(file)) throw FileError(message(file, ": there is no such file."));
   if (has_ending(file, ".csv")) return table_info(file);
-  if (has_ending(file, ".mrk.json")) return feature_line_info(file);
+  if (has_ending(file, ".mrk.json") || has_ending(file, ".fcsv")) return slicer_info(file);
   if (is_transform_file(file)) return transform_info(file);
+  if (is_surface_mesh_file(file)) return mesh_info(file);
   return image_info(file);
 }
 
@@ -240,7 +319,8 @@ ExitCode run(const InfoCommand& command) {
 }
 
 constexpr const char* kDetails =
-    R"(Understands images, transforms, landmarks, feature lines and regions of interest.
+    R"(Understands images, transforms, landmarks, feature lines, regions of interest, points and meshes
+(.obj, .off, .ply).
 
 Example:
   crease info thorax.nii.gz)";

@@ -34,6 +34,7 @@ Example: two X-rays with rigid bones and some landmarks
       --landmarks pairs.csv --init-transform rigid --output registered)";
 
 struct LandmarkErrors {
+  std::vector<double> each;
   double largest = 0;
   double rms = 0;
 };
@@ -43,6 +44,7 @@ LandmarkErrors landmark_errors(const Landmarks<Dim>& landmarks, const Transform<
   LandmarkErrors errors;
   for (int j = 0; j < landmarks.size(); ++j) {
     const double error = (transform.map(landmarks.fixed[j]) - landmarks.moving[j]).norm();
+    errors.each.push_back(error);
     errors.largest = std::max(errors.largest, error);
     errors.rms += error * error / landmarks.size();
   }
@@ -93,12 +95,14 @@ Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& inpu
   json["jacobian"] = to_json(evaluation.jacobian);
   json["landmarks"] = {{"count", input.landmarks.size()},
                        {"max_error_mm", landmarks.largest},
-                       {"rms_error_mm", landmarks.rms}};
+                       {"rms_error_mm", landmarks.rms},
+                       {"errors_mm", landmarks.each}};
   json["bodies"] = Json::array();
   for (const auto& body : evaluation.bodies) json["bodies"].push_back(to_json(body));
   json["initial"] = {{"angle_deg", outcome.alignment.report.angle_deg},
                      {"shift_mm", outcome.alignment.report.shift_mm}};
   json["improved"] = outcome.improved;
+  json["notes"] = outcome.domain ? outcome.domain->notes : std::vector<std::string>();
   return json;
 }
 

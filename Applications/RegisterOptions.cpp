@@ -24,6 +24,7 @@ void check_transform(const RegisterOptions& o) {
     refuse_if(o.roi.has_value(), "roi", o, needs);
     refuse_if(o.no_creases, "no-creases", o, needs);
     refuse_if(o.feature_lines.has_value(), "feature-lines", o, needs);
+    refuse_if(o.landmarks_conflict == "refine", "landmarks-conflict refine", o, needs);
   }
   if (!o.is_spline()) {
     const char* needs = "a spline: --transform triangular-bspline or bspline";
@@ -55,9 +56,13 @@ void check_landmarks(const RegisterOptions& o) {
     if (given && !has) throw UsageError(message("--", option, " needs --landmarks FILE."));
   };
   needs_landmarks(o.landmarks_mode != "exact", "landmarks-mode soft");
-  needs_landmarks(o.landmarks_conflict != "error", "landmarks-conflict compromise");
+  needs_landmarks(o.landmarks_conflict != "error", "landmarks-conflict");
   needs_landmarks(o.landmarks_sigma.has_value(), "landmarks-sigma");
   needs_landmarks(o.init == "landmarks", "init landmarks");
+  if (o.landmarks_conflict != "error" && o.landmarks_mode == "soft") {
+    throw UsageError(
+        "--landmarks-conflict is for exact landmarks; soft ones cannot contradict each other.");
+  }
   if (o.landmarks_sigma && o.landmarks_mode != "soft") {
     throw UsageError(
         "--landmarks-sigma needs --landmarks-mode soft: exact landmarks have no "
@@ -92,14 +97,6 @@ void check_weights(const RegisterOptions& o) {
   if (o.image_weight() == 0 && o.landmarks.empty()) {
     throw UsageError(message(o.has_metric() ? "--alpha 0" : "--metric none",
                              " leaves nothing to register by; give --landmarks FILE."));
-  }
-}
-
-void check_start(const RegisterOptions& o) {
-  if (o.init_is_file() && o.init_transform && *o.init_transform != "none") {
-    throw UsageError(
-        "--init with a file is the start as it is; it excludes --init-transform rigid "
-        "and affine.");
   }
 }
 
@@ -217,8 +214,9 @@ std::vector<Option> cost_options(RegisterOptions& o) {
        .open_minimum = true},
       {.name = "landmarks-conflict",
        .target = &o.landmarks_conflict,
-       .help = "Exact landmarks that contradict each other: stop, or meet them on average",
-       .choices = {"error", "compromise"}},
+       .help = "Exact landmarks that contradict each other: stop, divide the triangles that hold "
+               "them, or meet them on average",
+       .choices = {"error", "refine", "compromise"}},
       {.name = "metric",
        .target = &o.metric,
        .help = "Likeness: sum of squared differences, or landmarks alone",
@@ -297,7 +295,6 @@ void check(const RegisterOptions& options) {
   check_transform(options);
   check_landmarks(options);
   check_weights(options);
-  check_start(options);
 }
 
 }  // namespace crease

@@ -43,7 +43,7 @@ template <int Dim>
 Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Dim>& input,
                           RunReport& report, ProgressReporter& progress) {
   progress.report({.stage = "alignment"});
-  if (input.start) return {.map = *input.start, .report = {}};
+  if (input.start && !options.has_metric()) return {.map = *input.start, .report = {}};
   const AlignmentOptions wanted = alignment_options<Dim>(options, input.landmarks.size());
   if (!options.has_metric() && wanted.start == AlignmentStart::kLandmarks) {
     if (options.transform == "affine") {
@@ -53,7 +53,7 @@ Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Di
   }
   const auto found =
       align(input.fixed.image, input.moving.image, pointer(input.fixed_mask),
-            pointer(input.moving_mask), input.landmarks, wanted, progress.callback());
+            pointer(input.moving_mask), input.landmarks, wanted, progress.callback(), input.start);
   if (!found.report.improved) {
     report.add_warning("the initial alignment found no better map than its start, which was kept.");
   }
@@ -97,12 +97,15 @@ struct Basis {
 
 Basis<2> triangular_basis(const RegisterOptions& options, const RegisterInput<2>& input,
                           RunReport& report) {
-  const CreasedDomainOptions wanted = {.degree = options.spline_degree(),
-                                       .smoothness = options.spline_smoothness(),
-                                       .creases = !options.no_creases,
-                                       .edge_length = options.mesh_size.value_or(0),
-                                       .num_triangles = options.triangles.value_or(0),
-                                       .rigid_bodies = options.rigidity_weight() > 0};
+  CreasedDomainOptions wanted = {.degree = options.spline_degree(),
+                                 .smoothness = options.spline_smoothness(),
+                                 .creases = !options.no_creases,
+                                 .edge_length = options.mesh_size.value_or(0),
+                                 .num_triangles = options.triangles.value_or(0),
+                                 .rigid_bodies = options.rigidity_weight() > 0};
+  if (options.landmarks_conflict == "refine" && options.landmarks_mode == "exact") {
+    wanted.landmarks = input.landmarks;
+  }
   const RegionOfInterest region =
       input.region ? *input.region : rectangle_of(input.fixed.image.raster());
   CreasedDomain domain =
@@ -135,6 +138,16 @@ NullSpaceKind null_space_of(const std::string& name) {
   return name == "svd" ? NullSpaceKind::kSvd : NullSpaceKind::kElimination;
 }
 
+LandmarkOptions landmark_options(const RegisterOptions& options) {
+  LandmarkOptions landmarks;
+  if (options.landmarks_mode == "soft") landmarks.mode = LandmarkMode::kSoft;
+  if (options.landmarks_conflict == "compromise") {
+    landmarks.conflict = LandmarkConflict::kCompromise;
+  }
+  landmarks.sigma_mm = options.landmarks_sigma.value_or(landmarks.sigma_mm);
+  return landmarks;
+}
+
 template <int Dim>
 Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Dim>& input,
                           const AffineMap<Dim>& start, const Basis<Dim>& basis,
@@ -162,13 +175,7 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
     registration.energy("rigidity", weights["rigidity"], rigidity<Dim>(basis.bodies));
   }
   if (!input.landmarks.empty()) {
-    LandmarkOptions landmarks;
-    if (options.landmarks_mode == "soft") landmarks.mode = LandmarkMode::kSoft;
-    if (options.landmarks_conflict == "compromise") {
-      landmarks.conflict = LandmarkConflict::kCompromise;
-    }
-    landmarks.sigma_mm = options.landmarks_sigma.value_or(landmarks.sigma_mm);
-    registration.landmarks(input.landmarks, landmarks);
+    registration.landmarks(input.landmarks, landmark_options(options));
   }
   if (options.optimizer == "steepest-descent") {
     registration.optimizer(std::make_shared<SteepestDescent>(
@@ -210,6 +217,10 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
     outcome.improved = result.improved;
   } catch (const SolverError& error) {
     report.add_warning(message("no solution: ", error.what(), " The result is the initial map."));
+    report.add_warnings(make_landmark_constraints(input.landmarks, *basis.basis, alignment.map,
+                                                  landmark_options(options),
+                                                  NullSpaceKind::kElimination)
+                            .notes);  // what may have led there
     outcome.transform = std::make_shared<SplineTransform<Dim>>(basis.basis, alignment.map);
     outcome.stopped_because = "the solver failed";
     outcome.converged = outcome.improved = false;

@@ -15,6 +15,7 @@
 #include "Applications/RunReport.h"
 #include "Applications/TransformInput.h"
 #include "Core/Parallel.h"
+#include "Geometry/SurfaceMeshFile.h"
 #include "Images/MakeInterpolator.h"
 #include "Images/Resample.h"
 #include "Registration/InverseTransform.h"
@@ -28,7 +29,8 @@ using Json = nlohmann::ordered_json;
 struct WarpCommand {
   RunOptions run;
   std::vector<std::string> transforms;
-  std::optional<std::string> moving, reference, output_image, points, output_points, displacement;
+  std::optional<std::string> moving, reference, output_image, points, output_points, mesh,
+      output_mesh, displacement;
   std::string interpolator = "cubic";
   std::optional<double> outside;
   bool inverse = false;
@@ -39,10 +41,12 @@ constexpr const char* kDetails =
     R"(A transform maps points of the fixed image to the moving image. Give one of
   --moving M --reference F --output-image W     M on the grid of F: W(x) = M(T(x))
   --points IN.csv --output-points OUT.csv       T(x) for points with the columns x,y[,z][,name] in mm
+  --mesh IN --output-mesh OUT                   T(x) for the vertices of a mesh, .obj, .off or .ply
   --displacement OUT.mha --reference F          T(x) - x on the grid of F, mm
 Several --transform are a chain: the first one is applied first. With --inverse all of this is done with
 T^-1, the reference being an image in the space that T maps to; where there is no inverse the
-image gets the value outside, and points and displacements are NaN.
+image gets the value outside, and points and displacements are NaN. A 2D transform leaves the z of a mesh as
+it is.
 
 Example:
   crease warp --transform out/transform.json --moving labels.nii.gz --reference fixed.nii.gz \
@@ -73,6 +77,8 @@ std::vector<Option> options_of(WarpCommand& c) {
        .help = "Value where the moving image does not reach (0)"},
       file("points", c.points, "Points to map: CSV x,y[,z][,name]"),
       file("output-points", c.output_points, "Where the mapped points go: CSV"),
+      file("mesh", c.mesh, "Mesh to map: .obj, .off or .ply"),
+      file("output-mesh", c.output_mesh, "Where the mapped mesh goes: .obj, .off or .ply"),
       file("displacement", c.displacement, "Where the displacement field goes"),
       {.name = "inverse", .target = &c.inverse, .help = "Use T^-1"},
       {.name = "spacing",
@@ -93,18 +99,26 @@ void check(const WarpCommand& c) {
   };
   together(c.moving.has_value(), c.output_image.has_value(), "moving", "output-image");
   together(c.points.has_value(), c.output_points.has_value(), "points", "output-points");
-  if (!c.moving && !c.points && !c.displacement) {
+  together(c.mesh.has_value(), c.output_mesh.has_value(), "mesh", "output-mesh");
+  if (!c.moving && !c.points && !c.mesh && !c.displacement) {
     throw UsageError(
-        "nothing to do: give --moving with --output-image, --points with "
-        "--output-points, or --displacement.");
+        "nothing to do: give --moving with --output-image, --points with --output-points, --mesh "
+        "with "
+        "--output-mesh, or --displacement.");
   }
   const bool needs_grid = c.moving || c.displacement;
   if (needs_grid && !c.reference) throw UsageError("--reference FILE is needed for the grid.");
   if (!needs_grid && c.reference) {
-    throw UsageError("--reference has no meaning with --points alone.");
+    throw UsageError("--reference has no meaning without --moving or --displacement.");
   }
   if (!c.moving && (c.outside || c.interpolator != "cubic")) {
     throw UsageError("--outside and --interpolator have no meaning without --moving.");
+  }
+  for (const auto& [name, file] : {std::pair("output-image", &c.output_image),
+                                   {"output-points", &c.output_points},
+                                   {"output-mesh", &c.output_mesh},
+                                   {"displacement", &c.displacement}}) {
+    if (*file) check_output_file(name, **file);
   }
 }
 
@@ -199,6 +213,22 @@ void map_points(const WarpCommand& c, RunReport& report, const PointMap<Dim>& ma
 }
 
 template <int Dim>
+void map_mesh(const WarpCommand& c, RunReport& report, const PointMap<Dim>& map,
+              WarpResult& result) {
+  SurfaceMesh mesh = read_surface_mesh(*c.mesh);
+  report.add_input("mesh", *c.mesh);
+  for (Point<3>& p : mesh.vertices) {
+    p.head<Dim>() = map(p.head<Dim>());
+    if (!p.allFinite()) ++result.unresolved;
+  }
+  write_file(*c.output_mesh,
+             [&](const std::filesystem::path& file) { write_surface_mesh(file, mesh); });
+  result.figures["output_mesh"] = *c.output_mesh;
+  result.figures["num_vertices"] = mesh.vertices.size();
+  result.summary += fmt::format("{} vertices: {}\n", mesh.vertices.size(), *c.output_mesh);
+}
+
+template <int Dim>
 WarpResult warp(const WarpCommand& c, RunReport& report) {
   const auto transform = read_transforms<Dim>(report, c.transforms);
   PointMap<Dim> map = [&transform](const Point<Dim>& x) { return transform->map(x); };
@@ -212,6 +242,7 @@ WarpResult warp(const WarpCommand& c, RunReport& report) {
   }
   input.check_spacing_was_used();
   if (c.points) map_points(c, report, map, result);
+  if (c.mesh) map_mesh(c, report, map, result);
   result.figures["unresolved"] = result.unresolved;
   return result;
 }

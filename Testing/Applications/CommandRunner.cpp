@@ -58,16 +58,17 @@ CommandResult run_crease(const std::vector<std::string>& arguments) {
   return run_program(CREASE_COMMAND, arguments);
 }
 
-bool kill_crease(const std::vector<std::string>& arguments, const std::function<bool()>& when) {
+bool kill_crease(const std::vector<std::string>& arguments,
+                 const std::function<bool(const std::string& err)>& when) {
   const TemporaryFolder folder;
-  const pid_t process =
-      start(CREASE_COMMAND, arguments, (folder / "out").string(), (folder / "err").string());
+  const std::string err = (folder / "err").string();
+  const pid_t process = start(CREASE_COMMAND, arguments, (folder / "out").string(), err);
   int status = 0;
   while (waitpid(process, &status, WNOHANG) == 0) {
-    if (when()) {
+    if (when(read_text(err))) {
       kill(process, SIGKILL);
       waitpid(process, &status, 0);
-      return true;
+      return WIFSIGNALED(status);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

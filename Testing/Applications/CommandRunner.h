@@ -20,9 +20,11 @@ CommandResult run_program(const std::string& program, const std::vector<std::str
 /// The same with the built `crease`.
 CommandResult run_crease(const std::vector<std::string>& arguments);
 
-/// Starts it, kills it with SIGKILL as soon as `when` returns true, and waits.
+/// Starts it, kills it with SIGKILL as soon as `when` is true of what it has told on its error stream, and
+/// waits.
 /// @return false when it ended by itself before.
-bool kill_crease(const std::vector<std::string>& arguments, const std::function<bool()>& when);
+bool kill_crease(const std::vector<std::string>& arguments,
+                 const std::function<bool(const std::string& err)>& when);
 
 /// DIR/result.json. @throws when it is missing or no JSON.
 nlohmann::json read_result(const std::filesystem::path& folder);

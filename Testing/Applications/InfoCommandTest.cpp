@@ -107,6 +107,57 @@ TEST_F(InfoCommand, DescribesTables) {
   EXPECT_EQ(region["area_mm2"], 20);
 }
 
+TEST_F(InfoCommand, DescribesPoints) {
+  const auto table = info(folder.write("p.csv", "x,y,name\n1,2,a\n-3,5,b\n"));
+  EXPECT_EQ(table["kind"], "points");
+  EXPECT_EQ(table["count"], 2);
+  EXPECT_EQ(table["lower_mm"], (std::vector<double>{-3, 2}));
+  const auto old_list =
+      info(folder.write("p.fcsv", "# CoordinateSystem = RAS\n1,1,2,3,0,0,0,1,1,1,0,a,,\n"));
+  EXPECT_EQ(old_list["kind"], "points");
+  EXPECT_EQ(old_list["upper_mm"], (std::vector<double>{-1, -2, 3}));
+  const auto list = info(folder.write(
+      "p.mrk.json", R"({"markups":[{"type":"Fiducial","coordinateSystem":"LPS","controlPoints":)"
+                    R"([{"label":"a","position":[1,2,3]},{"label":"b","position":[4,5,6]}]}]})"));
+  EXPECT_EQ(list["kind"], "points");
+  EXPECT_EQ(list["count"], 2);
+  const auto curve = info(folder.write(
+      "c.mrk.json", R"({"markups":[{"type":"Curve","coordinateSystem":"LPS","controlPoints":)"
+                    R"([{"label":"a","position":[1,2,0]},{"label":"b","position":[4,6,0]}]}]})"));
+  EXPECT_EQ(curve["kind"], "feature lines");
+  EXPECT_EQ(curve["lines"][0]["length_mm"], 5);
+}
+
+TEST_F(InfoCommand, DescribesMeshes) {
+  const std::string file = folder.write("m.obj",
+                                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\n"
+                                        "f 2 3 4\nf 3 1 4\n");
+  const auto json = info(file);
+  EXPECT_EQ(json["kind"], "mesh");
+  EXPECT_EQ(json["vertices"], 4);
+  EXPECT_EQ(json["faces"], 4);
+  EXPECT_EQ(json["boundary_loops"], 0);
+  EXPECT_EQ(json["genus"], 0);
+  EXPECT_EQ(json["upper_mm"], (std::vector<double>{1, 1, 2}));
+  EXPECT_THAT(run_crease({"info", file}).out,
+              ::testing::AllOf(HasSubstr("4 vertices"), HasSubstr("genus 0")));
+}
+
+TEST_F(InfoCommand, DescribesAffineTransformsAndVolumes) {
+  save_transform(RigidTransform<3>(), folder / "r.json");
+  const auto rigid = info((folder / "r.json").string());
+  EXPECT_EQ(rigid["type"], "rigid");
+  EXPECT_EQ(rigid["parameters"], 6);
+  Raster<3> raster;
+  raster.size = {3, 4, 5};
+  write_displacement_field(folder / "u.nii.gz", DisplacementField<3>(raster, Vector<3>(1, -2, 3)));
+  const auto field = info((folder / "u.nii.gz").string());
+  EXPECT_EQ(field["kind"], "image");
+  EXPECT_EQ(field["dimension"], 3);
+  EXPECT_EQ(field["components"], 3);
+  EXPECT_EQ(field["size"], (std::vector<int>{3, 4, 5}));
+}
+
 TEST_F(InfoCommand, RefusesWhatItDoesNotUnderstand) {
   const auto refused = [](const std::string& file, int code, const char* text) {
     const auto run = run_crease({"info", file});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -48,6 +49,17 @@ class RegisterFixture : public ::testing::Test {
     }
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     return run_crease(arguments);
+  }
+
+  /// Expects that code, one line on the error stream with these texts, and no result.
+  void expect_refused(const CommandResult& run, int code,
+                      const std::vector<std::string>& texts) const {
+    EXPECT_EQ(run.code, code) << run.err;
+    EXPECT_THAT(run.err, ::testing::StartsWith("crease register: "));
+    for (const auto& text : texts) EXPECT_THAT(run.err, ::testing::HasSubstr(text));
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/result.json"));
   }
 
   TemporaryFolder folder;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "Geometry/SurfaceMeshFile.h"
 #include "Images/ImageFile.h"
 #include "Testing/Applications/CommandRunner.h"
 #include "Testing/Applications/TemporaryFolder.h"
@@ -171,6 +172,57 @@ TEST_F(WarpCommand, InverseImageOfAWarpedImageIsTheImage) {
   }
 }
 
+TEST_F(WarpCommand, MapsMeshesAndKeepsTheirFaces) {
+  const std::string mesh = folder.write("in.obj", "v 10 20 5\nv 1.5 -2 6\nv 3 4 7\nf 1 2 3\n");
+  ASSERT_EQ(run_crease({"warp", "--transform", file("spline.json"), "--mesh", mesh, "--output-mesh",
+                        file("out.off"), "--quiet"})
+                .code,
+            0);
+  const auto spline = load_transform<2>(folder / "spline.json");
+  const SurfaceMesh mapped = read_surface_mesh(folder / "out.off");
+  ASSERT_EQ(mapped.vertices.size(), 3U);
+  EXPECT_EQ(mapped.vertices[0].head<2>(), spline->map({10, 20}));
+  EXPECT_EQ(mapped.vertices[0].z(), 5);  // a 2D transform knows none
+  EXPECT_EQ(mapped.faces, (std::vector<std::vector<int>>{{0, 1, 2}}));
+}
+
+TEST_F(WarpCommand, MapsMeshesInSpace) {
+  AffineMap<3> map;
+  map.offset = {1, 2, 3};
+  save_transform(AffineTransform<3>(map), folder / "shift.json");
+  const std::string mesh = folder.write("in.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  ASSERT_EQ(run_crease({"warp", "--transform", file("shift.json"), "--inverse", "--mesh", mesh,
+                        "--output-mesh", file("out.obj"), "--quiet"})
+                .code,
+            0);
+  EXPECT_LT((read_surface_mesh(folder / "out.obj").vertices[1] - Point<3>(0, -2, -3)).norm(), 1e-9);
+}
+
+TEST_F(WarpCommand, InverseDisplacementUndoesTheTransform) {
+  ASSERT_EQ(run_crease({"warp", "--transform", file("spline.json"), "--inverse", "--reference",
+                        file("image.mha"), "--displacement", file("back.mha"), "--quiet"})
+                .code,
+            0);
+  const auto back = read_displacement_field<2>(folder / "back.mha");
+  const auto spline = load_transform<2>(folder / "spline.json");
+  for (const auto& [i, j] : {std::pair{8, 9}, {20, 16}, {31, 25}}) {
+    const Point<2> y = back.raster().point(Vector<2>(i, j));
+    EXPECT_LT((spline->map(y + back(i, j)) - y).norm(), 1e-6);  // a millionth of a pixel
+  }
+}
+
+TEST_F(WarpCommand, SingularMapsHaveNoInverse) {
+  AffineMap<2> flat;
+  flat.linear << 1, 0, 0, 0;
+  save_transform(AffineTransform<2>(flat), folder / "flat.json");
+  const std::string points = folder.write("in.csv", "x,y\n3,5\n");
+  const auto run = run_crease({"warp", "--transform", file("flat.json"), "--inverse", "--points",
+                               points, "--output-points", file("out.csv"), "--quiet"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("singular and has no inverse"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.csv"));
+}
+
 TEST_F(WarpCommand, RefusesContradictions) {
   const std::string t = file("turn.json"), m = file("image.mha");
   const auto refused = [&](const std::vector<std::string>& extra, int code, const char* text) {
@@ -186,6 +238,7 @@ TEST_F(WarpCommand, RefusesContradictions) {
   refused({"--transform", t, "--moving", m}, 2, "--moving needs --output-image");
   refused({"--transform", t, "--moving", m, "--output-image", "w.mha"}, 2, "--reference");
   refused({"--transform", t, "--points", m}, 2, "--points needs --output-points");
+  refused({"--transform", t, "--output-mesh", "m.obj"}, 2, "--output-mesh needs --mesh");
   refused({"--transform", t, "--displacement", "u.mha"}, 2, "--reference");
   refused({"--transform", "none.json", "--displacement", "u.mha", "--reference", m}, 3,
           "none.json");

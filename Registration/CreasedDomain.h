@@ -34,7 +34,7 @@ struct CreasedDomainOptions {
   bool rigid_bodies = true;
   /// Landmarks to be met exactly: where they contradict each other, or nearly, triangles are divided up to
   /// four times (LandmarkRefinement). Those with a sigma do not count.
-  Landmarks<2> landmarks;
+  Landmarks<2> landmarks = {};
 };
 
 /// A triangulated region, its feature lines and the triangular B-splines on it.

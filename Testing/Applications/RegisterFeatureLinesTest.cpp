@@ -54,7 +54,7 @@ TEST_F(RegisterFeatureLines, KindsOfLaterVersions) {
 }
 
 TEST_F(RegisterFeatureLines, CrossingsGetAVertexAndANote) {
-  const auto two = registered(lines("1,10,32\n1,54,32\n2,32,10\n2,32,54\n"));
+  const auto two = registered(lines("1,10,35.6\n1,54,35.6\n2,28.5,10\n2,28.5,54\n"));
   EXPECT_THAT(two["notes"].dump(), AllOf(HasSubstr("1 crossing(s)"), HasSubstr("junction")));
   const auto itself = registered(lines("1,15,15\n1,48,48\n1,48,15\n1,15,48\n"));
   EXPECT_THAT(itself["notes"].dump(), HasSubstr("1 crossing(s)"));

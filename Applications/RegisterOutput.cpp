@@ -1,6 +1,8 @@
 #include "Applications/RegisterOutput.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "Core/Parallel.h"
 #include "Images/MakeInterpolator.h"
@@ -39,7 +41,9 @@ std::string single_file_ending(const std::string& moving, ImageFormat format) {
 
 template <int Dim>
 void write_warped(const OutputFolder& output, const RegisterOptions& options,
-                  const ReadImage<Dim>& moving, const Image<float, Dim>& warped) {
+                  const ReadImage<Dim>& moving, Image<float, Dim> warped) {
+  std::ranges::replace_if(
+      warped.values(), [](float value) { return std::isnan(value); }, 0.0f);
   const std::string ending = single_file_ending(options.moving, moving.format);
   const bool own_format = !ending.empty() && can_write(moving.format, moving.pixel_type);
   if (own_format) {
@@ -73,8 +77,8 @@ RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterIn
   RegisterImages<Dim> images{transform_images(transform, raster), {}};
   const auto kind =
       options.interpolator == "linear" ? InterpolationKind::kLinear : InterpolationKind::kCubic;
-  images.warped =
-      resample(*make_interpolator(input.moving.image, kind), raster, row_map(images.displacement));
+  images.warped = resample(*make_interpolator(input.moving.image, kind), raster,
+                           row_map(images.displacement), std::numeric_limits<float>::quiet_NaN());
   return images;
 }
 
@@ -125,8 +129,9 @@ void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
                     const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images) {
   const Image<float, Dim>& fixed = input.fixed.image;
   const PointMap<Dim> stay = [](const Point<Dim>& x) { return x; };
-  const Image<float, Dim> before = resample(
-      *make_interpolator(input.moving.image, InterpolationKind::kLinear), fixed.raster(), stay);
+  const Image<float, Dim> before =
+      resample(*make_interpolator(input.moving.image, InterpolationKind::kLinear), fixed.raster(),
+               stay, std::numeric_limits<float>::quiet_NaN());
   DeformationDrawing<Dim> drawing;
   drawing.fixed_raster = fixed.raster();
   drawing.map = [&](const Point<Dim>& x) { return outcome.transform->map(x); };

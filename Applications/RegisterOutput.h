@@ -11,7 +11,7 @@ namespace crease {
 /// Images that follow from the transform, on the fixed grid.
 template <int Dim>
 struct RegisterImages : TransformImages<Dim> {
-  Image<float, Dim> warped;  ///< moving(T(x)); 0 outside the moving image
+  Image<float, Dim> warped;  ///< moving(T(x)); NaN outside the moving image
 };
 
 template <int Dim>

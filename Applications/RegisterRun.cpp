@@ -184,7 +184,7 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   registration.null_space(null_space_of(options.null_space));
   Schedule schedule;
   schedule.levels = options.levels;
-  schedule.adapt_bending = !options.gamma;
+  schedule.adapt_weights = !options.gamma;
   registration.schedule(schedule);
   return registration;
 }

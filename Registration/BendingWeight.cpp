@@ -10,10 +10,14 @@ constexpr double kDeterminedShare = 0.35;
 
 }  // namespace
 
+double BendingBalance::noise_density() const {
+  return counted_measure > 0 ? 2 * image_energy / counted_measure * correlated_measure
+                             : std::numeric_limits<double>::infinity();
+}
+
 double BendingBalance::weight() const {
-  if (!(counted_measure > 0)) return std::numeric_limits<double>::infinity();
-  const double density = 2 * image_energy / counted_measure * correlated_measure;
-  const double wanted = 0.5 * density * kDeterminedShare * static_cast<double>(free_parameters);
+  const double wanted =
+      0.5 * noise_density() * kDeterminedShare * static_cast<double>(free_parameters);
   return bending_energy > 0 ? wanted / bending_energy : std::numeric_limits<double>::infinity();
 }
 

@@ -19,6 +19,8 @@ struct BendingBalance {
   /// little bending, smooth motions and noisy images for much.
   /// Source: D. J. C. MacKay, "Bayesian Interpolation", Neural Computation 4, 1992, for the form.
   double weight() const;
+  /// s, mm^Dim: what 1/2 r^2 per sample stands for in 1/2 int r^2 when it is noise.
+  double noise_density() const;
 };
 
 }  // namespace crease

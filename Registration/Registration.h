@@ -53,8 +53,9 @@ struct Schedule {
   double level_bending = 4;  ///< the energy named "bending" weighs this much more per coarser level
   bool optical_flow = true;  ///< try a start fitted to dense optical flow (2D, same modality)
   /// Weighs the energy named "bending" by the noise and the roughness that the levels show
-  /// (BendingBalance), from its weight on, and more where the finest map folds.
-  bool adapt_bending = false;
+  /// (BendingBalance), from its weight on, and more where the finest map folds; and soft landmarks by
+  /// the noise, so that their uncertainty in mm is what it says beside the image's.
+  bool adapt_weights = false;
   bool smooth_finest = true;  ///< low-pass [1 2 1]/4 at the finest level, against noise
 };
 

@@ -262,7 +262,7 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
   if (parts_.has_images()) {
     const bool finest = level + 1 == levels_.size();
     const bool last =
-        finest && (!parts_.schedule.adapt_bending || balanced_ >= std::ssize(levels_));
+        finest && (!parts_.schedule.adapt_weights || balanced_ >= std::ssize(levels_));
     stopping.relative_decrease = last ? 1e-3 : 3e-3;
     stopping.small_decreases = 1;
     stopping.step_length = finest ? 0.02 : 0.1;
@@ -356,15 +356,15 @@ void RegistrationRun<Dim>::keep_better(LevelReport& level, const Phi& start, Phi
   level.stopped_because = result_.stopped_because = "no better map than the start was found";
 }
 
-/// Balances bending against the noise that the level's end shows, and bends more where the map folds.
+/// Balances bending and soft landmarks against the noise that the level's end shows, and bends more where
+/// the map folds.
 /// Returns whether the level is worth another round.
 template <int Dim>
-bool RegistrationRun<Dim>::renew_bending_weight(std::size_t l, const LevelReport& level,
-                                                const Phi& phi) {
-  constexpr double kMostChange = 32, kSmallChange = 2, kOverRelaxation = 1.5;
+bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level, const Phi& phi) {
+  constexpr double kMostChange = 32, kOverRelaxation = 1.5, kLeastNoise = 1e-6;
   const Level& here = levels_[l];
   const auto bending = std::ranges::find(energies_, "bending", &WeightedEnergy<Dim>::name);
-  if (!parts_.schedule.adapt_bending || bending == energies_.end() || here.image == nullptr) {
+  if (!parts_.schedule.adapt_weights || bending == energies_.end() || here.image == nullptr) {
     return false;
   }
   const bool finest = l + 1 == levels_.size();
@@ -375,21 +375,37 @@ bool RegistrationRun<Dim>::renew_bending_weight(std::size_t l, const LevelReport
     return true;
   }
   if (stiffened_ > 0 || balanced_ == kMostBalancings) return false;
+  ++balanced_;
   const double h2 = std::pow(parts_.basis->mean_edge_length(), 2);
   const BendingBalance balance{.image_energy = level.terms_after.at("image"),
                                .counted_measure = here.counted_measure,
                                .correlated_measure = here.correlated_measure,
                                .bending_energy = level.terms_after.at("bending"),
                                .free_parameters = result_.free_parameters};
-  const double before = bending->weight;
   // Less bending roughens the motion, which asks for less again: go a little beyond what is asked for.
-  const double change = std::pow(balance.weight() / before, kOverRelaxation);
-  const double wanted = std::clamp(before * std::clamp(change, 1 / kMostChange, kMostChange),
-                                   kLeastBending * h2, kMostBending * h2);
-  const bool renew = !finest || wanted > kSmallChange * before || wanted < before / kSmallChange;
-  if (renew) bending->weight = wanted;
-  ++balanced_;
-  return renew && finest;  // a coarser level chooses for the next one
+  const double change = std::pow(balance.weight() / bending->weight, kOverRelaxation);
+  bool changed =
+      set_weight(*bending,
+                 std::clamp(bending->weight * std::clamp(change, 1 / kMostChange, kMostChange),
+                            kLeastBending * h2, kMostBending * h2),
+                 finest);
+  const auto landmarks = std::ranges::find(energies_, "landmarks", &WeightedEnergy<Dim>::name);
+  if (landmarks != energies_.end()) {
+    const double density = std::clamp(balance.noise_density(), kLeastNoise, 1.0);
+    changed |= set_weight(*landmarks, parts_.landmark_options.weight * density, finest);
+  }
+  return changed && finest;  // a coarser level chooses for the next one
+}
+
+/// Sets a weight unless the change is too small for another round of the finest level.
+template <int Dim>
+bool RegistrationRun<Dim>::set_weight(WeightedEnergy<Dim>& energy, double weight, bool finest) {
+  constexpr double kSmallChange = 2;
+  if (finest && weight < kSmallChange * energy.weight && weight > energy.weight / kSmallChange) {
+    return false;
+  }
+  energy.weight = weight;
+  return true;
 }
 
 /// Whether the map turns tissue over at a sample of the second finest level.
@@ -417,7 +433,7 @@ void RegistrationRun<Dim>::optimise() {
     do {
       phi = add_round(level, optimise_level(l, phi, optimizer_of(l)));
       level.terms_after = terms_at(l, phi);
-    } while (!cancelled_ && renew_bending_weight(l, level, phi));
+    } while (!cancelled_ && renew_weights(l, level, phi));
     if (l + 1 == levels_.size()) keep_better(level, start, phi);
     result_.levels.push_back(std::move(level));
     candidates = {phi};

@@ -45,7 +45,8 @@ class RegistrationRun {
   Phi add_round(LevelReport& level, OptimizerResult round);
   double correlated_samples(std::size_t level) const;
   void keep_better(LevelReport& level, const Phi& start, Phi& phi);
-  bool renew_bending_weight(std::size_t l, const LevelReport& level, const Phi& phi);
+  bool set_weight(WeightedEnergy<Dim>& energy, double weight, bool finest);
+  bool renew_weights(std::size_t l, const LevelReport& level, const Phi& phi);
   bool folds(const Phi& phi) const;
   OptimizerResult optimise_level(std::size_t level, const Phi& start,
                                  const std::shared_ptr<const Optimizer>& optimizer);

@@ -22,7 +22,8 @@ Outcome run(const Phantom& phantom, const CreasedDomain& domain, const LandmarkO
   registration.basis(domain.basis)
       .energy("bending", default_bending_weight(*domain.basis), bending<2>(body_weights<2>()))
       .energy("rigidity", 10, rigidity<2>())
-      .landmarks(phantom.landmarks, landmarks);
+      .landmarks(phantom.landmarks, landmarks)
+      .schedule({.adapt_weights = true});
   const auto result = registration.run();
 
   Outcome outcome;
@@ -81,9 +82,7 @@ int main(int argc, char** argv) {
        {std::pair{"exact landmarks", &hard}, {"soft landmarks", &soft}}) {
     const std::string with = std::string(", ") + name;
     thresholds.push_back({"shift of a body (mm)" + with, outcome->worst_shift, 0.25});
-    // Landmarks that are off by 1 mm at corners 35 mm from the centre turn a body by up to 1.6 degrees.
-    const double angle = outcome == &hard ? 0.3 : 1.0;
-    thresholds.push_back({"angle of a body (degrees)" + with, outcome->worst_angle, angle});
+    thresholds.push_back({"angle of a body (degrees)" + with, outcome->worst_angle, 0.3});
     thresholds.push_back(
         {"smallest determinant" + with, outcome->smallest_determinant, 1e-3, true});
     thresholds.push_back({"E_R per area in bodies" + with, outcome->rigidity_per_area, 1e-4});

@@ -1,0 +1,63 @@
+#include "Registration/BendingWeight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "Registration/Phantoms/Phantom.h"
+#include "Registration/Registration.h"
+#include "Testing/Registration/TestScenes.h"
+#include "Transforms/Splines/TensorBSplineBasis.h"
+
+namespace crease {
+namespace {
+
+// gamma E_S = 1/2 s n: twice the noise or parameters ask for twice the weight, twice the bending for half.
+TEST(BendingBalance, IsInProportion) {
+  const BendingBalance balance{.image_energy = 3,
+                               .counted_measure = 600,
+                               .correlated_measure = 2,
+                               .bending_energy = 5,
+                               .free_parameters = 100};
+  EXPECT_DOUBLE_EQ(balance.noise_density(), 0.02);
+  BendingBalance other = balance;
+  other.image_energy *= 2;
+  EXPECT_DOUBLE_EQ(other.weight(), 2 * balance.weight());
+  other = balance;
+  other.free_parameters *= 2;
+  EXPECT_DOUBLE_EQ(other.weight(), 2 * balance.weight());
+  other = balance;
+  other.bending_energy *= 2;
+  EXPECT_DOUBLE_EQ(other.weight(), 0.5 * balance.weight());
+  other.bending_energy = 0;
+  EXPECT_TRUE(std::isinf(other.weight()));
+}
+
+double mean_error(const Phantom& phantom, double weight, bool adapt) {
+  Registration<2> registration(phantom.fixed, phantom.moving);
+  registration
+      .basis(std::make_shared<TensorBSplineBasis<2>>(covering_lattice(phantom.fixed.raster(), 16)))
+      .energy("bending", weight, bending<2>())
+      .schedule({.adapt_weights = adapt});
+  const auto result = registration.run();
+  const auto found = [&](const Point<2>& x) { return result.transform->map(x); };
+  return testing::rms_difference(phantom.fixed.raster(), found, phantom.truth, 20);
+}
+
+// Neither a clean nor a noisy pair is served by the other's weight; the balance serves both.
+TEST(AdaptedWeights, SuitCleanAndNoisyImages) {
+  const Phantom clean = make_phantom("blobs", {.size = 192});
+  const Phantom noisy = make_phantom("blobs", {.size = 192, .noise = 0.05});
+  constexpr double kSoft = 1e-4, kStiff = 0.2;
+  const double clean_soft = mean_error(clean, kSoft, false);
+  const double noisy_stiff = mean_error(noisy, kStiff, false);
+  EXPECT_GT(mean_error(clean, kStiff, false), 4 * clean_soft);
+  EXPECT_GT(mean_error(noisy, kSoft, false), 1.1 * noisy_stiff);
+  for (double start : {kSoft, kStiff}) {
+    EXPECT_LT(mean_error(clean, start, true), 2 * clean_soft) << start;
+    EXPECT_LT(mean_error(noisy, start, true), 1.5 * noisy_stiff) << start;
+  }
+}
+
+}  // namespace
+}  // namespace crease

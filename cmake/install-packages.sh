@@ -18,6 +18,7 @@ packages=(
   libinsighttoolkit5-dev   # image files
   libopencv-dev            # filters
   libcgal-dev              # triangulation
+  libboost-dev             # exact fractions in tests (CGAL brings it too)
   libsuitesparse-dev       # sparse factors
   libopenblas-dev          # their BLAS
   libgsl-dev               # minimisers

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "Core/Error.h"
+#include "Testing/Transforms/Splines/JetErrors.h"
 #include "Testing/Transforms/Splines/ReferenceVectors.h"
 
 namespace crease {
@@ -14,32 +15,13 @@ namespace {
 
 const std::vector<Vector<2>> kFlag = {{1.0, 0.375}, {-0.25, 1.0}};
 
-// Largest absolute difference of parts of two jets.
-template <int Dim>
-struct JetErrors {
-  double value = 0.0, gradient = 0.0, hessian = 0.0;
-  double value_scale = 0.0, gradient_scale = 0.0, hessian_scale = 0.0;
-
-  void add(const SplineJet<Dim>& jet, double v, const std::vector<double>& g,
-           const std::vector<double>& h) {
-    const Eigen::Map<const Vector<Dim>> gradient_truth(g.data());
-    const Eigen::Map<const typename SplineJet<Dim>::SecondDerivatives> hessian_truth(h.data());
-    value = std::max(value, std::abs(jet.value - v));
-    gradient = std::max(gradient, (jet.gradient - gradient_truth).cwiseAbs().maxCoeff());
-    hessian = std::max(hessian, (jet.hessian - hessian_truth).cwiseAbs().maxCoeff());
-    value_scale = std::max(value_scale, std::abs(v));
-    gradient_scale = std::max(gradient_scale, gradient_truth.cwiseAbs().maxCoeff());
-    hessian_scale = std::max(hessian_scale, hessian_truth.cwiseAbs().maxCoeff());
-  }
-};
-
 template <int Dim>
 void check_reference_cases() {
   const auto files = testing::reference_vectors("simplex_spline", Dim);
   if (files.empty()) GTEST_SKIP() << "no test vectors";
   int checked = 0;
   for (const auto& file : files) {
-    JetErrors<Dim> errors;
+    testing::JetErrors errors;
     for (const auto& c : file["cases"]) {
       if (c["dim"] != Dim) continue;
       ++checked;
@@ -49,9 +31,7 @@ void check_reference_cases() {
       errors.add(jet, std::stod(c["M"].get<std::string>()), testing::numbers(c["grad"]),
                  testing::numbers(c["hess"]));
     }
-    EXPECT_LE(errors.value, 1e-13 * errors.value_scale) << file["name"];
-    EXPECT_LE(errors.gradient, 1e-12 * errors.gradient_scale) << file["name"];
-    EXPECT_LE(errors.hessian, 1e-11 * errors.hessian_scale) << file["name"];
+    errors.expect_small(file["name"]);
   }
   EXPECT_GT(checked, 0);
 }

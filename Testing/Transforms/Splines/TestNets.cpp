@@ -124,6 +124,16 @@ KnotNet<2> jittered_net(int cells_x, int cells_y, int degree, double alpha, int 
   return spread_knots(jittered_mesh(cells_x, cells_y, seed), degree, alpha);
 }
 
+KnotNet<2> within_eight(KnotNet<2> net) {
+  double largest = 8.0;
+  for (const auto& v : net.mesh.vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+  for (auto& v : net.mesh.vertices) v *= 8.0 / largest;
+  for (auto& cloud : net.clouds) {
+    for (auto& knot : cloud) knot *= 8.0 / largest;
+  }
+  return net;
+}
+
 KnotNet<2> collapsed_knots(SimplexMesh<2> mesh, int degree) {
   KnotNet<2> net;
   net.degree = degree;

@@ -14,9 +14,11 @@ SimplexMesh<2> grid_mesh(int cells_x, int cells_y);
 SimplexMesh<2> jittered_mesh(int cells_x, int cells_y, int seed);
 
 /// Generic clouds at inner vertices (radius alpha times the smallest inradius), in the outer wedge at
-/// border vertices; `turn` rotates all patterns and 1.7 i that of vertex i unless `same_pattern`.
+/// border vertices; 1.7 i rotates the pattern of vertex i unless `same_pattern`.
 KnotNet<2> spread_knots(SimplexMesh<2> mesh, int degree, double alpha, bool same_pattern = false);
 KnotNet<2> jittered_net(int cells_x, int cells_y, int degree, double alpha, int seed);
+/// The net shrunk so that no coordinate exceeds 8: absolute tolerances refer to such nets.
+KnotNet<2> within_eight(KnotNet<2> net);
 /// All knots at the vertices: Bernstein polynomials.
 KnotNet<2> collapsed_knots(SimplexMesh<2> mesh, int degree);
 

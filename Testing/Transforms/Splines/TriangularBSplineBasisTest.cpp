@@ -6,6 +6,7 @@
 #include <random>
 
 #include "Core/Error.h"
+#include "Testing/Transforms/Splines/Jumps.h"
 #include "Testing/Transforms/Splines/TestNets.h"
 #include "Transforms/BoundGrid.h"
 #include "Transforms/Splines/KnotLocator.h"
@@ -17,6 +18,7 @@ namespace {
 using testing::jittered_net;
 using testing::points_inside;
 using testing::special_points;
+using testing::within_eight;
 
 std::vector<Point<2>> all_points(const KnotNet<2>& net) {
   auto points = special_points(net);
@@ -24,11 +26,12 @@ std::vector<Point<2>> all_points(const KnotNet<2>& net) {
   return points;
 }
 
-// Nets of every kind for one degree.
+// Nets of every kind for one degree; the tolerances are meant for coordinates up to 8.
 std::vector<KnotNet<2>> nets_of_degree(int degree) {
-  return {jittered_net(3, 3, degree, 0.3, 1), jittered_net(2, 3, degree, 0.5, 2),
-          testing::straight_crease_net(degree, 0.4), testing::ring_net(degree, 0.4, true),
-          testing::ring_net(degree, 0.4, false)};
+  return {within_eight(jittered_net(3, 3, degree, 0.3, 1)),
+          within_eight(jittered_net(2, 3, degree, 0.5, 2)),
+          within_eight(testing::straight_crease_net(degree, 0.4)),
+          testing::ring_net(degree, 0.4, true), testing::ring_net(degree, 0.4, false)};
 }
 
 // sum_i c_i B_i with derivatives, c one column per component.
@@ -43,14 +46,6 @@ SplineJet<Dim> spline(const TriangularBSplineBasis<Dim>& basis, const Eigen::Vec
     jet.hessian += c[b.control_points[i]] * b.hessians.col(i);
   }
   return jet;
-}
-
-Eigen::VectorXd random_values(int count, int seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Eigen::VectorXd c(count);
-  for (auto& v : c) v = uniform(random);
-  return c;
 }
 
 TEST(TriangularBSplineBasis, FunctionsSumToOneEverywhere) {
@@ -112,11 +107,10 @@ TEST(TriangularBSplineBasis, IdentityIsReproducedByGrevillePoints) {
     for (const auto& net : nets_of_degree(degree)) {
       const TriangularBSplineBasis<2> basis(net);
       const auto points = basis.greville_points();
-      const double scale = mesh_scale(net.mesh);
       for (const auto& x : all_points(net)) {
         for (int a = 0; a < 2; ++a) {
           const auto jet = spline<2>(basis, points.row(a), x);
-          EXPECT_NEAR(jet.value, x[a], 1e-11 * scale);
+          EXPECT_NEAR(jet.value, x[a], 1e-11);
           EXPECT_LT((jet.gradient - Vector<2>::Unit(a)).norm(), 1e-10);
           EXPECT_LT(jet.hessian.norm(), 1e-8);
         }
@@ -170,153 +164,28 @@ TEST(TriangularBSplineBasis, IsBernsteinBasisWhenKnotsCollapse) {
       }
       const auto b = basis.evaluate(x);
       for (std::size_t i = 0; i < b.control_points.size(); ++i) {
-        EXPECT_NEAR(b.values[i], truth[b.control_points[i]], 1e-13);
+        truth[b.control_points[i]] -= b.values[i];
       }
-    }
-  }
-}
-
-// One-sided limits of sum_i c_i B_i on both sides of knot lines.
-class Limits {
- public:
-  explicit Limits(const KnotNet<2>& net, int seed)
-      : basis_(net),
-        graph_(net.mesh, net.clouds, net.degree),
-        neighbours_(vertex_neighbours(net.mesh)) {
-    c_ = random_values(basis_.num_control_points(), seed);
-  }
-
-  SplineJet<2> jump(const Point<2>& x, const Vector<2>& direction) const {
-    SplineJet<2> sum;
-    const auto& near = neighbours_[basis_.find_simplex(x)];
-    for (double sign : {1.0, -1.0}) {
-      const std::vector<Vector<2>> flag = {sign * direction,
-                                           sign * Vector<2>(-direction[1], direction[0])};
-      for (const auto& f : graph_.evaluate(x, flag, near, 2)) {
-        const double c = sign * c_[basis_.control_points_of(f.simplex)[f.index]];
-        sum.value += c * f.jet.value;
-        sum.gradient += c * f.jet.gradient;
-        sum.hessian += c * f.jet.hessian;
-      }
-    }
-    return sum;
-  }
-
-  // The largest jumps of value, gradient and second derivatives on a segment, within the domain.
-  Eigen::Vector3d largest(const Point<2>& a, const Point<2>& b) const {
-    Eigen::Vector3d most = Eigen::Vector3d::Zero();
-    const double same = 1e-9 * mesh_scale(basis_.net().mesh);
-    if ((b - a).norm() < same) return most;
-    const Vector<2> normal = Vector<2>(a[1] - b[1], b[0] - a[0]).normalized();
-    for (double s : {0.05, 0.37, 0.5, 0.81, 0.95}) {
-      const Point<2> x = (1 - s) * a + s * b;
-      if (!basis_.contains(x + same * normal) || !basis_.contains(x - same * normal)) continue;
-      const auto j = jump(x, normal);
-      most = most.cwiseMax(Eigen::Vector3d(std::abs(j.value), j.gradient.norm(), j.hessian.norm()));
-    }
-    return most;
-  }
-
-  // The same over all segments between knots of the clouds of edges' ends.
-  Eigen::Vector3d largest() const {
-    Eigen::Vector3d most = Eigen::Vector3d::Zero();
-    for (const auto& t : basis_.net().mesh.simplices) {
-      for (int j = 0; j < 3; ++j) {
-        for (const auto& a : basis_.net().clouds[t[j]]) {
-          for (const auto& b : basis_.net().clouds[t[(j + 1) % 3]])
-            most = most.cwiseMax(largest(a, b));
-        }
-      }
-    }
-    return most;
-  }
-
-  const TriangularBSplineBasis<2>& basis() const { return basis_; }
-
- private:
-  TriangularBSplineBasis<2> basis_;
-  SimplexSplineGraph<2> graph_;
-  std::vector<std::vector<int>> neighbours_;
-  Eigen::VectorXd c_;
-};
-
-TEST(TriangularBSplineBasis, IsSmoothAcrossKnotLines) {
-  for (int degree = 1; degree <= 4; ++degree) {
-    const Limits limits(jittered_net(2, 2, degree, 0.5, 4), 8);
-    EXPECT_EQ(limits.basis().smoothness(), degree - 1);
-    const auto jumps = limits.largest();
-    EXPECT_LT(jumps[0], 1e-10) << "degree " << degree;
-    if (degree >= 2) EXPECT_LT(jumps[1], 1e-9) << "degree " << degree;
-    if (degree >= 3) EXPECT_LT(jumps[2], 1e-7) << "degree " << degree;
-    if (degree == 2) EXPECT_GT(jumps[2], 1e-2);  // a quadratic's second derivatives do jump
-  }
-}
-
-TEST(TriangularBSplineBasis, StraightCreaseBendsAlongItsLineAndNowhereElse) {
-  for (int degree = 2; degree <= 4; ++degree) {
-    const auto net = testing::straight_crease_net(degree, 0.4);
-    const Limits limits(net, 5);
-    double crease = 0.0;
-    for (const auto& t : net.mesh.simplices) {
-      for (int j = 0; j < 3; ++j) {
-        const Point<2>&a = net.mesh.vertices[t[j]], &b = net.mesh.vertices[t[(j + 1) % 3]];
-        const auto jumps = limits.largest(a, b);
-        EXPECT_LT(jumps[0], 1e-11) << "degree " << degree;
-        if (std::abs(a[0] - 20.0) < 1e-9 && std::abs(b[0] - 20.0) < 1e-9) {
-          crease = std::max(crease, jumps[1]);
-        } else {
-          EXPECT_LT(jumps[1], 1e-9) << "degree " << degree;
-        }
-      }
-    }
-    EXPECT_GT(crease, 1e-2) << "degree " << degree;
-  }
-}
-
-TEST(TriangularBSplineBasis, CollapsedCloudsMakeHinges) {
-  auto net = jittered_net(4, 4, 3, 0.4, 3);
-  const int v = 12;  // the middle
-  for (auto& knot : net.clouds[v]) knot = net.clouds[v][0];
-  const Limits limits(net, 5);
-  EXPECT_GT(
-      limits.largest(net.clouds[v][0], 0.9 * net.clouds[v][0] + 0.1 * net.clouds[v + 1][0])[1],
-      1e-2);
-  EXPECT_LT(limits.largest()[0], 1e-11);
-}
-
-// Knots of a fan lie on the prolonged edges of the line: its own edges may bend, no other does.
-TEST(TriangularBSplineBasis, FannedCreaseIsContinuousAndSmoothElsewhere) {
-  for (const bool body : {true, false}) {
-    for (const int degree : {2, 3}) {
-      const auto net = testing::ring_net(degree, 0.4, body);
-      const Limits limits(net, 6);
-      for (const auto& t : net.mesh.simplices) {
-        for (int j = 0; j < 3; ++j) {
-          const Point<2>&a = net.mesh.vertices[t[j]], &b = net.mesh.vertices[t[(j + 1) % 3]];
-          const bool crease = std::abs(a.norm() - 1.0) < 1e-9 && std::abs(b.norm() - 1.0) < 1e-9;
-          const auto jumps = limits.largest(a, b);
-          EXPECT_LT(jumps[0], 1e-11);
-          if (!crease) EXPECT_LT(jumps[1], 1e-8);
-        }
-      }
+      EXPECT_LT(truth.cwiseAbs().maxCoeff(), 1e-13) << "degree " << degree;
     }
   }
 }
 
 TEST(TriangularBSplineBasis, DerivativesMatchCentralDifferences) {
-  for (int degree = 2; degree <= 4; ++degree) {
-    const auto net = jittered_net(3, 3, degree, 0.5, 4);
+  for (int degree = 2; degree <= 5; ++degree) {
+    const auto net = within_eight(jittered_net(3, 3, degree, 0.5, 4));
     const TriangularBSplineBasis<2> basis(net);
-    const auto c = random_values(basis.num_control_points(), 3);
-    const double step = 1e-4;  // of triangles of 10 mm
-    for (const auto& x : points_inside(net.mesh, 6, 21)) {
+    const Eigen::VectorXd c =
+        testing::random_control_values(1, basis.num_control_points(), 3).transpose();
+    const double step = 1e-5;
+    for (const auto& x : points_inside(net.mesh, 20, 21)) {
       const auto jet = spline<2>(basis, c, x);
       for (int a = 0; a < 2; ++a) {
         const Vector<2> e = step * Vector<2>(Vector<2>::Unit(a));
         if (!basis.contains(x + e) || !basis.contains(x - e)) continue;
         const auto p = spline<2>(basis, c, x + e), q = spline<2>(basis, c, x - e);
         EXPECT_NEAR(jet.gradient[a], (p.value - q.value) / (2 * step), 1e-5);
-        if (degree < 3) continue;
+        if (degree < 3) continue;  // second derivatives that jump have no differences
         const Vector<2> row = (p.gradient - q.gradient) / (2 * step);
         for (int b = 0; b < 2; ++b) {
           EXPECT_NEAR(jet.hessian[second_derivative_index<2>(a, b)], row[b], 1e-3);
@@ -327,7 +196,7 @@ TEST(TriangularBSplineBasis, DerivativesMatchCentralDifferences) {
 }
 
 TEST(TriangularBSplineBasis, IsAffinelyInvariant) {
-  const auto net = jittered_net(3, 3, 3, 0.5, 4);
+  const auto net = within_eight(jittered_net(3, 3, 3, 0.5, 4));
   const Matrix<2> A{{1.3, 0.4}, {-0.2, 0.9}};
   const Point<2> t(-120.0, 310.0);
   KnotNet<2> moved = net;
@@ -349,7 +218,7 @@ TEST(TriangularBSplineBasis, IsAffinelyInvariant) {
 
 // The last knot t_n cancels between neighbours that share control points.
 TEST(TriangularBSplineBasis, LastKnotDoesNotMatter) {
-  for (int degree = 1; degree <= 4; ++degree) {
+  for (int degree = 1; degree <= 5; ++degree) {
     const auto net = jittered_net(3, 3, degree, 0.4, 9);
     const TriangularBSplineBasis<2> basis(net);
     auto clouds = net.clouds;
@@ -412,16 +281,6 @@ TEST(TriangularBSplineBasis, KnowsItsDomain) {
   EXPECT_THROW(basis.evaluate({31, 5}), InvalidInput);
 }
 
-TEST(TriangularBSplineBasis, DoubledKnotsLowerTheSmoothness) {
-  auto net = jittered_net(3, 3, 3, 0.4, 1);
-  for (auto& cloud : net.clouds) cloud[2] = cloud[1];
-  const Limits limits(net, 8);
-  EXPECT_EQ(limits.basis().smoothness(), 1);
-  const auto jumps = limits.largest();
-  EXPECT_LT(jumps[1], 1e-9);
-  EXPECT_GT(jumps[2], 1e-2);
-}
-
 TEST(TriangularBSplineBasis, TraceOnStraightBorderDependsOnBorderControlPointsAlone) {
   for (int degree = 2; degree <= 4; ++degree) {
     auto net = jittered_net(3, 3, degree, 0.4, 1);
@@ -451,7 +310,6 @@ TEST(TriangularBSplineBasis, WorksInSpace) {
     const auto net = testing::tetrahedral_net(degree, 0.4);
     const TriangularBSplineBasis<3> basis(net);
     const auto identity = basis.greville_points();
-    const auto c = random_values(basis.num_control_points(), 3);
     auto points = points_inside(net.mesh, 6, 17);
     for (const auto& p : net.mesh.vertices) points.push_back(p);
     points.push_back({5, 0, 5});
@@ -464,8 +322,9 @@ TEST(TriangularBSplineBasis, WorksInSpace) {
       EXPECT_GT(b.values.minCoeff(), -1e-12);
       for (int a = 0; a < 3; ++a) {
         const auto jet = spline<3>(basis, identity.row(a), x);
-        EXPECT_NEAR(jet.value, x[a], 1e-10);
-        EXPECT_LT((jet.gradient - Vector<3>::Unit(a)).norm(), 1e-9);
+        EXPECT_NEAR(jet.value, x[a], 1e-11);
+        EXPECT_LT((jet.gradient - Vector<3>::Unit(a)).norm(), 1e-10);
+        EXPECT_LT(jet.hessian.norm(), 1e-8);
       }
     }
     EXPECT_NEAR(basis.measure(), 1000.0, 1e-9);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "Core/Error.h"
+#include "Testing/Transforms/SampleBases.h"
 #include "Testing/Transforms/SampleSplines.h"
 
 namespace crease {
@@ -36,6 +37,33 @@ void second_derivatives_match_differences() {
   }
 }
 
+// <B phi, F> = <phi, B^T F>
+template <int Dim>
+void expect_transposed_adjoint() {
+  Box<Dim> box;
+  box.add(Point<Dim>::Zero());
+  box.add(Point<Dim>::Constant(10));
+  for (const auto& sample : testing::sample_bases<Dim>(box)) {
+    SplineTransform<Dim> transform(sample.basis);
+    testing::Numbers numbers(2);
+    const Eigen::VectorXd phi = numbers.columns<1>(transform.num_parameters()).transpose();
+    transform.set_parameters(phi);
+    std::vector<Point<Dim>> x;
+    std::vector<Vector<Dim>> forces;
+    double forward = 0, size = 0;
+    for (int k = 0; k < 200; ++k) {
+      x.push_back(numbers.columns<Dim>(1, 5) + Vector<Dim>::Constant(5));
+      forces.push_back(numbers.columns<Dim>(1));
+      const double product = forces.back().dot(transform.map(x.back()) - x.back());
+      forward += product;
+      size += std::abs(product);
+    }
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(phi.size());
+    transform.add_adjoint(x, forces, gradient);
+    EXPECT_NEAR(gradient.dot(phi), forward, 1e-13 * size) << sample.name;
+  }
+}
+
 }  // namespace
 
 TEST(SplineTransform, SecondDerivativesMatchCentralDifferences) {
@@ -57,6 +85,11 @@ TEST(SplineTransform, AddsTheSplineToTheAffinePart) {
   transform.set_control_points(shift);
   EXPECT_LT((transform.map(x) - affine(x) - Vector<2>(1, -2)).norm(), 1e-13);
   EXPECT_LT((transform.spatial_jacobian(x) - affine.linear).norm(), 1e-13);
+}
+
+TEST(SplineTransform, AdjointIsTheTransposedMap) {
+  expect_transposed_adjoint<2>();
+  expect_transposed_adjoint<3>();
 }
 
 // Value and gradient go on across the border, along a straight line outside.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "Testing/Gradients.h"
 #include "Testing/Transforms/SampleSplines.h"
 #include "Transforms/Energies/Energy.h"
 
@@ -24,19 +25,15 @@ Eigen::MatrixXd dense_hessian(const Energy<Dim>& energy, const SplineBasis<Dim>&
   return lower.selfadjointView<Eigen::Lower>();
 }
 
-/// Central differences of the value against the gradient: their relative difference in a random
-/// direction, for the step given.
+/// The gradient's slope in a random direction against central differences of the value.
 template <int Dim>
-double gradient_error(const Energy<Dim>& energy, const ControlPoints<Dim>& phi, double step,
-                      unsigned seed = 4) {
+void expect_gradient(const Energy<Dim>& energy, const ControlPoints<Dim>& phi,
+                     const std::string& what) {
   ControlPoints<Dim> gradient = ControlPoints<Dim>::Zero(Dim, phi.cols());
   energy.evaluate(phi, 1, &gradient, nullptr);
-  const ControlPoints<Dim> direction = Numbers(seed).columns<Dim>(phi.cols());
-  const double slope = gradient.cwiseProduct(direction).sum();
-  const double difference = (energy.evaluate(phi + step * direction, 1, nullptr, nullptr) -
-                             energy.evaluate(phi - step * direction, 1, nullptr, nullptr)) /
-                            (2 * step);
-  return std::abs(difference - slope) / (std::abs(slope) + 1e-12);
+  const ControlPoints<Dim> direction = Numbers(4).columns<Dim>(phi.cols());
+  expect_slope([&](double t) { return energy.evaluate(phi + t * direction, 1, nullptr, nullptr); },
+               gradient.cwiseProduct(direction).sum(), what);
 }
 
 /// Central differences of the gradient against the Hessian, relative.

@@ -81,20 +81,6 @@ TYPED_TEST(RigidityEnergySuite, RespectsTheAffinePart) {
   EXPECT_NEAR(together, apart, 1e-12 * together);
 }
 
-TYPED_TEST(RigidityEnergySuite, GradientMatchesCentralDifferences) {
-  constexpr int kDim = TypeParam::value;
-  const auto basis = small_basis<kDim>();
-  AffineMap<kDim> shear;
-  shear.linear(0, 1) = 0.4;
-  const RigidityEnergy<kDim> energy(*basis, smooth_weights<kDim>(), shear);
-  const auto phi = random_points<kDim>(*basis);
-  EXPECT_LT(testing::gradient_error<kDim>(energy, phi, 1e-5), 1e-6);
-  // The error is that of the difference: it falls with the square of the step.
-  const double coarse = testing::gradient_error<kDim>(energy, phi, 1e-2);
-  const double fine = testing::gradient_error<kDim>(energy, phi, 1e-3);
-  EXPECT_GT(coarse, 50 * fine);
-}
-
 TYPED_TEST(RigidityEnergySuite, ExactHessianMatchesCentralDifferences) {
   constexpr int kDim = TypeParam::value;
   const auto basis = small_basis<kDim>(2);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "Core/Error.h"
+#include "Registration/CreasedDomain.h"
 #include "Testing/Registration/TestScenes.h"
+#include "Testing/Transforms/Domains/SampleDomains.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 
@@ -48,6 +50,41 @@ TEST(LandmarkConstraints, EveryPointOfTheNullSpaceMeetsThem) {
         make_landmark_constraints<2>(some_landmarks(), *kBasis, affine, {}, kind);
     EXPECT_EQ(constraints.null_space->rank(), 4);
     EXPECT_LT(largest_error(some_landmarks(), *constraints.null_space, affine), 1e-9 * 141);
+  }
+}
+
+// Landmarks where knot lines meet: on vertices, edges, the border and a crossing of creases. Each row of C
+// holds the basis at one of them, which must sum to 1.
+TEST(LandmarkConstraints, RowsSumToOneOnKnotLines) {
+  const auto box = testing::raster_of<2>(100).bounds();
+  const RegionOfInterest region =
+      testing::rectangle(box.lower[0], box.lower[1], box.upper[0], box.upper[1]);
+  const CreasedDomain domain =
+      make_creased_domain(region,
+                          {testing::open_line({{20, 20}, {50, 47}, {80, 85}}),
+                           testing::open_line({{15, 80}, {52, 50}, {99.5, 30}}),
+                           testing::closed_line(testing::regular_polygon({75, 25}, 12, 10))},
+                          {.edge_length = 30, .edge_length_near_lines = 12});
+  const auto& mesh = domain.mesh.mesh;
+  std::vector<Point<2>> places = mesh.vertices;
+  for (const auto& s : mesh.simplices) {
+    for (double share : {0.1, 0.5}) {
+      places.push_back((1 - share) * mesh.vertices[s[0]] + share * mesh.vertices[s[1]]);
+    }
+  }
+  for (const auto& cloud : domain.basis->net().clouds) {
+    for (const auto& knot : cloud) {
+      if (domain.basis->contains(knot)) places.push_back(knot);
+    }
+  }
+  EXPECT_GT(domain.plan.count(VertexRule::junction), 0);
+  EXPECT_GT(domain.plan.count(VertexRule::border_meeting), 0);
+  for (const auto& p : places) {
+    Landmarks<2> one;
+    one.fixed = one.moving = {p};
+    const auto constraints =
+        make_landmark_constraints<2>(one, *domain.basis, {}, {}, NullSpaceKind::kElimination);
+    EXPECT_NEAR(constraints.null_space->constraints().C.sum(), 1, 1e-10) << p.transpose();
   }
 }
 

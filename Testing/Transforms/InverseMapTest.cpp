@@ -4,6 +4,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Testing/Transforms/SampleBases.h"
 #include "Testing/Transforms/SampleSplines.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/JacobianMap.h"
@@ -18,37 +19,63 @@ Raster<Dim> unit_raster(int size) {
   return raster;
 }
 
-/// A spline over the raster that moves points by up to some pixels without folding.
 template <int Dim>
-SplineTransform<Dim> smooth_warp(const Raster<Dim>& raster, double amplitude) {
-  SplineTransform<Dim> transform(
-      std::make_shared<TensorBSplineBasis<Dim>>(covering_lattice(raster, raster.size[0] / 4.0)));
+SplineTransform<Dim> random_warp(std::shared_ptr<const SplineBasis<Dim>> basis, double amplitude) {
+  SplineTransform<Dim> transform(std::move(basis));
   transform.set_control_points(
       testing::Numbers(3).columns<Dim>(transform.basis().num_control_points(), amplitude));
   return transform;
 }
 
+/// A spline over the raster that moves points by up to some pixels without folding.
 template <int Dim>
-void inverts(int size, double amplitude) {
-  const auto raster = unit_raster<Dim>(size);
-  const auto transform = smooth_warp<Dim>(raster, amplitude);
+SplineTransform<Dim> smooth_warp(const Raster<Dim>& raster, double amplitude) {
+  return random_warp<Dim>(testing::tensor_over<Dim>(raster.bounds(), 4, 3), amplitude);
+}
+
+template <int Dim>
+void inverts(const Transform<Dim>& transform, const Raster<Dim>& raster) {
   ASSERT_EQ(jacobian_map<Dim>(transform, raster).statistics().num_folded, 0);
   const InverseMap<Dim> inverse(transform, raster);
-  for (std::int64_t n = 0; n < raster.num_samples(); n += 7) {
-    const Point<Dim> x =
-        raster.row_start(n / size) + double(n % size) * raster.index_to_point().col(0);
-    const Point<Dim> y = transform.map(x);
-    const Point<Dim> back = inverse(y);
-    ASSERT_LT((transform.map(back) - y).norm(), 1e-6);
-    ASSERT_LT((back - x).norm(), 1e-5);
+  for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
+    for (int i = static_cast<int>(r % 5); i < raster.size[0]; i += 5) {
+      const Point<Dim> x = raster.row_start(r) + double(i) * raster.index_to_point().col(0);
+      const Point<Dim> y = transform.map(x);
+      const Point<Dim> back = inverse(y);
+      ASSERT_LT((transform.map(back) - y).norm(), 1e-6);
+      ASSERT_LT((back - x).norm(), 1e-5);
+    }
   }
+}
+
+/// The area within T(border of a box).
+double moved_area(const Transform<2>& transform, const Box<2>& box) {
+  std::vector<Point<2>> border;
+  constexpr int kSteps = 2000;
+  const std::array<Point<2>, 5> corners = {box.lower, Point<2>(box.upper[0], box.lower[1]),
+                                           box.upper, Point<2>(box.lower[0], box.upper[1]),
+                                           box.lower};
+  for (int side = 0; side < 4; ++side) {
+    for (int n = 0; n < kSteps; ++n) {
+      border.push_back(transform.map(corners[side] +
+                                     (corners[side + 1] - corners[side]) * (double(n) / kSteps)));
+    }
+  }
+  return signed_area(border);
 }
 
 }  // namespace
 
 TEST(InverseMap, UndoesASmoothWarp) {
-  inverts<2>(48, 4.0);
-  inverts<3>(16, 1.0);
+  inverts<2>(smooth_warp(unit_raster<2>(48), 4.0), unit_raster<2>(48));
+  inverts<3>(smooth_warp(unit_raster<3>(16), 1.0), unit_raster<3>(16));
+}
+
+TEST(InverseMap, UndoesTriangularSplinesAndCreases) {
+  const auto raster = unit_raster<2>(48);
+  inverts<2>(random_warp<2>(testing::triangles_over(raster.bounds(), {.degree = 3}), 1.5), raster);
+  inverts<2>(random_warp<2>(testing::triangles_over(raster.bounds(), {.degree = 2}), 1.5), raster);
+  inverts<2>(random_warp<2>(testing::creased_over(raster.bounds()), 0.6), raster);
 }
 
 TEST(InverseMap, UndoesALargeAffineMapFromACoarseGrid) {
@@ -98,32 +125,18 @@ TEST(InverseMap, RefusesAnEmptyGrid) {
 // The integral of det grad T is the area that the moved border encloses.
 TEST(JacobianMap, IntegralIsTheAreaOfTheImage) {
   const auto raster = unit_raster<2>(64);
-  const auto transform = smooth_warp<2>(raster, 3.0);
-  const auto map = jacobian_map<2>(transform, raster);
-  const auto statistics = map.statistics();
-  EXPECT_EQ(statistics.num_samples, 64 * 64);
-
-  std::vector<Point<2>> border;
-  constexpr int kSteps = 2000;
   const auto box = raster.bounds();
-  const std::array<Point<2>, 5> corners = {box.lower, Point<2>(box.upper[0], box.lower[1]),
-                                           box.upper, Point<2>(box.lower[0], box.upper[1]),
-                                           box.lower};
-  for (int side = 0; side < 4; ++side) {
-    for (int n = 0; n < kSteps; ++n) {
-      border.push_back(transform.map(corners[side] +
-                                     (corners[side + 1] - corners[side]) * (double(n) / kSteps)));
-    }
+  for (const auto& transform :
+       {smooth_warp<2>(raster, 3.0), random_warp<2>(testing::triangles_over(box, {}), 1.5),
+        random_warp<2>(testing::creased_over(box), 0.6)}) {
+    const auto statistics = jacobian_map<2>(transform, raster).statistics();
+    EXPECT_EQ(statistics.num_samples, 64 * 64);
+    const double area = moved_area(transform, box);
+    EXPECT_GT(std::abs(area - 64 * 64), 1e-3 * area);
+    EXPECT_NEAR(statistics.mean * 64 * 64, area, 1e-3 * area);
+    EXPECT_LT(statistics.minimum, statistics.mean);
+    EXPECT_GT(statistics.maximum, statistics.mean);
   }
-  double area = 0;
-  for (std::size_t n = 0; n < border.size(); ++n) {
-    const auto& p = border[n];
-    const auto& q = border[(n + 1) % border.size()];
-    area += 0.5 * (p[0] * q[1] - p[1] * q[0]);
-  }
-  EXPECT_NEAR(statistics.mean * 64 * 64, area, 1e-3 * area);
-  EXPECT_LT(statistics.minimum, statistics.mean);
-  EXPECT_GT(statistics.maximum, statistics.mean);
 }
 
 TEST(JacobianMap, FindsFoldsAndHonoursTheMask) {

@@ -29,10 +29,7 @@ EnergyFactory<Dim> bending(WeightField<Dim> rigid) {
 template <int Dim>
 EnergyFactory<Dim> rigidity(WeightField<Dim> rigid) {
   return [rigid](const SplineBasis<Dim>& basis, const AffineMap<Dim>& affine) {
-    // Exact for the energy of small strains; bodies that are rigid show no other.
-    RigidityOptions<Dim> options;
-    options.quadrature_degree = basis.product_degree(2, 1);
-    return std::make_shared<RigidityEnergy<Dim>>(basis, rigid, affine, options);
+    return std::make_shared<RigidityEnergy<Dim>>(basis, rigid, affine);
   };
 }
 

@@ -266,6 +266,8 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
     stopping.relative_decrease = last ? 1e-3 : 3e-3;
     stopping.small_decreases = 1;
     stopping.step_length = finest ? 0.02 : 0.1;
+  } else {
+    stopping.relative_decrease = 1e-10;  // iterations without images cost little
   }
   GaussNewtonOptions options;
   // A scalar factor does not see how rigidity couples coordinates; the factor of an earlier Hessian serves
@@ -276,6 +278,7 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
     options.linear_solver.kind = LinearSolver::kPreconditionedCg;
     options.linear_solver.max_cg_iterations = 6;
   }
+  if (!parts_.has_images()) options.linear_solver.kind = LinearSolver::kDirect;
   if (solver_ == nullptr) {
     solver_ = std::make_shared<DampedSolver>(options.linear_solver, null_space_->num_columns());
   }

@@ -130,7 +130,8 @@ TEST(TriangularBSplineGrid, MapsAsPointEvaluationDoes) {
           }
         }
       }
-      EXPECT_LT(largest, 1e-6) << "degree " << net.degree;  // single precision, |phi| <= 1
+      // Single precision, |phi| <= 1; the sums grow longer with the degree.
+      EXPECT_LT(largest, 4e-7 * net.degree) << "degree " << net.degree;
     }
   }
 }

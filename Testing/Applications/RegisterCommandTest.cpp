@@ -165,7 +165,7 @@ TEST_F(RegisterCommand, KilledRunsLeaveNoResult) {
     ASSERT_TRUE(std::filesystem::exists(result));
     const bool killed = testing::kill_crease(
         {"register", "--fixed", image("fixed.mha"), "--moving", image("moving.mha"), "--output",
-         output(), "--mesh-size", "1", "--progress", "json"},
+         output(), "--mesh-size", "3", "--progress", "json"},
         told(stage));
     EXPECT_TRUE(killed) << stage;
     EXPECT_FALSE(std::filesystem::exists(result)) << stage;

@@ -97,6 +97,26 @@ TEST_P(CreaseConstruction, IsContinuousAndSmoothOnAllOtherEdges) {
   }
 }
 
+// Integration cells fill their triangles; those in bands make the bands, outside the line's body.
+TEST_P(CreaseConstruction, CellsFillTheirTriangles) {
+  for (int degree = 2; degree <= 4; ++degree) {
+    const auto knots = placed(degree);
+    const auto& mesh = knots.net.mesh;
+    std::vector<double> area(mesh.simplices.size(), 0);
+    double in_bands = 0;
+    for (const auto& e : TriangularBSplineBasis<2>(knots.net).quadrature(0, 0)) {
+      area[e.patch] += e.weights.sum();
+      if (e.in_band) in_bands += e.weights.sum();
+    }
+    for (std::size_t t = 0; t < area.size(); ++t) {
+      const double whole = 0.5 * signed_content<2>(simplex_corners(mesh, static_cast<int>(t)));
+      EXPECT_NEAR(area[t], whole, 1e-12 * whole) << "degree " << degree << ", triangle " << t;
+    }
+    EXPECT_NEAR(in_bands, knots.plan.band_area, 1e-12) << "degree " << degree;
+    EXPECT_LT(knots.plan.band_area_in_bodies, 1e-12) << "degree " << degree;
+  }
+}
+
 // Nothing but affine maps is free of bending energy, although the bands carry none.
 TEST_P(CreaseConstruction, BendingHasTheAffineKernel) {
   for (int degree = 2; degree <= 3; ++degree) {

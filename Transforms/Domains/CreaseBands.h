@@ -10,8 +10,9 @@ namespace crease {
 
 /// The narrow bands in which a creased spline turns: per crease edge the convex hull of both clouds.
 ///
-/// The sides of a band are segments between knots, so a cell of the knot arrangement is inside or outside as a
-/// whole, and its centroid decides. Bending energy skips the bands; so does rigidity those without a body side.
+/// Most sides of a band are segments between knots of one function, and cells of the knot arrangement are cut
+/// along the others too: a cell is inside or outside as a whole, and its centroid decides. Bending energy skips
+/// the bands; so does rigidity those without a body side.
 class CreaseBands {
  public:
   struct Band {

@@ -90,6 +90,12 @@ std::vector<KnotCells::Segment> KnotCells::segments_in(int triangle,
       for (int j = start; j < end; ++j) add_segment(first[i], second[j], corners, segments);
     }
   }
+  for (int b : bands_.bands_in(triangle)) {
+    const auto& hull = bands_.bands()[b].hull;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      add_segment(hull[i], hull[(i + 1) % hull.size()], corners, segments);
+    }
+  }
   std::stable_sort(segments.begin(), segments.end(),
                    [](const Segment& s, const Segment& t) { return s.length > t.length; });
   return segments;

@@ -18,8 +18,8 @@ struct KnotCell {
 };
 
 /// Cuts the triangles of a net along the segments between knots that occur together in a function:
-/// t_{a,i} t_{b,j} with i + j <= n across an edge, and all pairs within a cloud. A cell is
-/// inside or outside the bands of crease edges as a whole (CreaseBands).
+/// t_{a,i} t_{b,j} with i + j <= n across an edge, and all pairs within a cloud; and along the sides of the
+/// bands of crease edges, so that a cell is inside or outside them as a whole (CreaseBands).
 class KnotCells {
  public:
   /// The net must outlive this and be valid (validate).

@@ -6,8 +6,9 @@
 #include "Core/Error.h"
 #include "Registration/CreasedDomain.h"
 #include "Testing/Registration/TestScenes.h"
-#include "Testing/Transforms/Domains/SampleDomains.h"
+#include "Testing/Transforms/SampleBases.h"
 #include "Transforms/SplineTransform.h"
+#include "Transforms/Splines/KnotLocator.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 
 namespace crease {
@@ -125,6 +126,29 @@ TEST(LandmarkConstraints, NamesTheDistanceOfALandmarkOutside) {
         make_landmark_constraints<2>(landmarks, *kBasis, {}, {}, NullSpaceKind::kElimination);
       },
       ThrowsMessage<InvalidInput>(AllOf(HasSubstr("landmark 3"), HasSubstr("5 mm outside"))));
+}
+
+// Ten functions reach into a cubic triangle's core: of twelve landmarks there, two follow from the others.
+TEST(LandmarkConstraints, ACubicCoreHoldsTenLandmarks) {
+  const auto basis = std::dynamic_pointer_cast<const TriangularBSplineBasis<2>>(
+      testing::triangles_over(testing::raster_of<2>(100).bounds(), {.degree = 3}));
+  AffineMap<2> affine;
+  affine.linear << 1.05, 0.1, -0.08, 0.98;
+  constexpr int kTriangle = 12;
+  const Point<2> middle = simplex_centroid(basis->net().mesh, kTriangle);
+  Landmarks<2> landmarks;
+  for (int j = 0; j < 12; ++j) {
+    const double angle = 2.4 * j;  // spread by the golden angle
+    landmarks.fixed.push_back(middle +
+                              std::sqrt(j + 0.5) * Vector<2>(std::cos(angle), std::sin(angle)));
+    ASSERT_TRUE(basis->in_core(kTriangle, landmarks.fixed.back()));
+    landmarks.moving.push_back(affine(landmarks.fixed.back()));
+  }
+  for (auto kind : {NullSpaceKind::kElimination, NullSpaceKind::kQr, NullSpaceKind::kSvd}) {
+    const auto constraints = make_landmark_constraints<2>(landmarks, *basis, {}, {}, kind);
+    EXPECT_EQ(constraints.null_space->rank(), 10);
+    EXPECT_EQ(constraints.notes.size(), 2u);
+  }
 }
 
 // A cubic span has 16 control points: 20 landmarks in it leave at least 4 that cannot be met.

@@ -119,6 +119,30 @@ TYPED_TEST(RegistrationLandmarks, AreExactAfterAnyStop) {
   }
 }
 
+// C N = 0, C Phi0 = d, and the span of N is that of the SVD's.
+TYPED_TEST(RegistrationLandmarks, NullSpacesMeetTheConstraints) {
+  constexpr int Dim = TestFixture::kDim;
+  const auto make = [&](NullSpaceKind kind) {
+    return make_landmark_constraints<Dim>(this->landmarks, *this->basis, {}, {}, kind).null_space;
+  };
+  const auto svd = make(NullSpaceKind::kSvd);
+  testing::Numbers numbers(7);
+  for (const auto kind : kNullSpaces) {
+    const auto space = make(kind);
+    EXPECT_EQ(space->rank(), this->landmarks.size());
+    const auto& [C, d, names] = space->constraints();
+    EXPECT_LT((C * space->offset() - d).cwiseAbs().maxCoeff(), 1e-13 * d.cwiseAbs().maxCoeff());
+    for (int trial = 0; trial < 10; ++trial) {
+      const Eigen::VectorXd step =
+          space->apply(numbers.columns<1>(space->reduced_size()).transpose());
+      const Eigen::Map<const RowMatrix> phi(step.data(), space->num_rows(), Dim);
+      EXPECT_LT((C * phi).cwiseAbs().maxCoeff(), 1e-13 * step.cwiseAbs().maxCoeff());
+      const Eigen::VectorXd projected = svd->apply(svd->apply_transpose(step));
+      EXPECT_LT((projected - step).norm(), 1e-10 * step.norm());
+    }
+  }
+}
+
 // Landmarks, bending and stretching: a convex problem with one minimum.
 TYPED_TEST(RegistrationLandmarks, AllNullSpacesAndSolversFindTheSameMinimum) {
   constexpr int Dim = TestFixture::kDim;

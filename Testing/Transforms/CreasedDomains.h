@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,7 @@ struct CreasedDomain {
   std::string name;
   DomainMesh mesh;
 };
+inline void PrintTo(const CreasedDomain& domain, std::ostream* stream) { *stream << domain.name; }
 
 /// Every kind of crease: outlines with and without a body, convex and concave, corners blunt and sharp,
 /// lines that meet the border, end inside, meet each other and cross; coarse.

@@ -284,7 +284,7 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
   template Alignment<Dim> align<Dim>(const Image<float, Dim>&, const Image<float, Dim>&,        \
                                      const Mask<Dim>*, const Mask<Dim>*, const Landmarks<Dim>&, \
                                      const AlignmentOptions&, const RegistrationCallback&,      \
-                                     const std::optional<AffineMap<Dim>>&);                     \
+                                     const GivenMap<Dim>&);                                     \
   template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,               \
                                       const std::string&);                                      \
   template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&, const AffineMap<Dim>&);

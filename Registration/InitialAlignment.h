@@ -10,6 +10,10 @@
 
 namespace crease {
 
+/// A map that may be given.
+template <int Dim>
+using GivenMap = std::optional<AffineMap<Dim>>;
+
 enum class AlignmentStart { kMoments, kCentres, kLandmarks, kIdentity };
 enum class AlignmentSearch { kNone, kRigid, kAffine };
 
@@ -63,14 +67,14 @@ template <int Dim>
 void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
                      const AffineMap<Dim>& map);
 
-#define CREASE_DECLARE(Dim)                                                                   \
-  extern template Alignment<Dim> align<Dim>(                                                  \
-      const Image<float, Dim>&, const Image<float, Dim>&, const Mask<Dim>*, const Mask<Dim>*, \
-      const Landmarks<Dim>&, const AlignmentOptions&, const RegistrationCallback&,            \
-      const std::optional<AffineMap<Dim>>&);                                                  \
-  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,      \
-                                             const std::string&);                             \
-  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,           \
+#define CREASE_DECLARE(Dim)                                                                     \
+  extern template Alignment<Dim> align<Dim>(const Image<float, Dim>&, const Image<float, Dim>&, \
+                                            const Mask<Dim>*, const Mask<Dim>*,                 \
+                                            const Landmarks<Dim>&, const AlignmentOptions&,     \
+                                            const RegistrationCallback&, const GivenMap<Dim>&); \
+  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,        \
+                                             const std::string&);                               \
+  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,             \
                                             const AffineMap<Dim>&);
 CREASE_DECLARE(2)
 CREASE_DECLARE(3)

@@ -25,10 +25,10 @@ class WeightField {
   template <std::invocable<const Point<Dim>&, int> F>
   WeightField(F weight) : weight_(std::move(weight)) {}  // NOLINT: a callable is a field
   /// A weight that depends on the region alone: what a body weighs need not be asked point by point.
-  static WeightField by_region(std::function<double(int region)> weight) {
+  static WeightField by_region(const std::function<double(int region)>& weight) {
     WeightField field;
     field.weight_ = [weight](const Point<Dim>&, int region) { return weight(region); };
-    field.of_region_ = std::move(weight);
+    field.of_region_ = weight;
     return field;
   }
 

@@ -90,6 +90,10 @@ void check_meta_image(const std::filesystem::path& path) {
     const long skipped = local ? 0 : std::atol(value_of(fields, "HeaderSize", "0").c_str());
     const auto total = needed + static_cast<std::uint64_t>(std::max(0l, skipped));
     if (content.size() < total) fail_truncated(data_path, total, content.size());
+  } else if (channels > 1) {  // ITK reads only the first of them and leaves the rest as it finds it
+    fail(path, message("pixels of ", channels,
+                       " values each, written as text, are not supported; "
+                       "write them as binary data (BinaryData = True)"));
   } else {
     const auto found = count_words(ByteReader(content, false).text(0, content.size()), values);
     if (found < values) {

@@ -79,6 +79,17 @@ TEST(BadImageFile, MetaImageWithTooFewPixels) {
   expect_refused(folder / "a.mhd", "are missing");
 }
 
+// ITK would read two of the four values and leave the others as they are in memory.
+TEST(BadImageFile, MetaImageWithVectorsAsText) {
+  const TemporaryFolder folder;
+  const std::string start = "ObjectType = Image\nNDims = 2\nBinaryData = False\nDimSize = 2 1\n";
+  const std::string end = "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n1 2 3 4\n";
+  write_text(folder / "a.mha", start + "ElementNumberOfChannels = 2\n" + end);
+  expect_refused(folder / "a.mha", "written as text");
+  write_text(folder / "a.mha", start + end);
+  EXPECT_EQ(read_image<2>(folder / "a.mha").image.values(), (std::vector<float>{1, 2}));
+}
+
 TEST(BadImageFile, SpacingAndDirectionThatMakeNoSense) {
   const TemporaryFolder folder;
   const std::string start = "ObjectType = Image\nNDims = 2\nBinaryData = True\nDimSize = 2 1\n";

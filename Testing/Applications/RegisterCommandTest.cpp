@@ -277,6 +277,10 @@ TEST_F(RegisterCommand, FitsLandmarksAloneByRigidMaps) {
           .code,
       0);
   EXPECT_LT(read_result(output())["landmarks"]["max_error_mm"], 1e-12);  // 90 degrees, (5, 1)
+  // x' = 5 - y: from row 6 on nothing is there.
+  const auto warped = read_image<2>(folder / "out/warped.mha").image;
+  for (int row = 6; row < 64; ++row) EXPECT_EQ(warped(20, row), 0) << row;
+  EXPECT_NE(warped(20, 5), 0);
 }
 
 /// A volume of soft blobs, and the same 1.5 mm further along x.

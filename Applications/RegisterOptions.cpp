@@ -162,8 +162,8 @@ std::vector<Option> domain_options(RegisterOptions& o) {
        .target = &o.mesh_size,
        .placeholder = "MM",
        .help =
-           "Edge length of the triangles away from lines, or of the B-spline's spans (a twelfth "
-           "of the longer side)",
+           "Edge length of the triangles, half as long near lines, or of the B-spline's spans (a "
+           "twelfth of the longer side)",
        .minimum = 0,
        .open_minimum = true},
       {.name = "triangles",
@@ -238,7 +238,9 @@ std::vector<Option> cost_options(RegisterOptions& o) {
       {.name = "gamma",
        .target = &o.gamma,
        .placeholder = "G",
-       .help = "Weight of bending, mm^2 (0.001 times the mean edge length squared)",
+       .help =
+           "Weight of bending, mm^2 (balanced against the noise that the images show, from 0.001 "
+           "times the mean edge length squared on)",
        .minimum = 0},
   };
 }

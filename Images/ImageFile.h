@@ -45,6 +45,7 @@ struct ImageInfo {
   std::int64_t num_not_finite = 0;  ///< NaN or infinite
 };
 
+/// An image and what its file said of it.
 template <int Dim>
 struct ReadImage {
   Image<float, Dim> image;

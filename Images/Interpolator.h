@@ -34,6 +34,7 @@ struct MappedRow {
 template <int Dim>
 class Interpolator {
  public:
+  /// The image at a point; `inside`: the point lies in the box of all pixels.
   struct Sample {
     double value = 0;
     Vector<Dim> gradient = Vector<Dim>::Zero();  ///< per mm

@@ -39,10 +39,13 @@ class Metric {
   };
 
   virtual ~Metric() = default;
+  /// For reports: "ssd".
   virtual std::string name() const = 0;
   virtual const Raster<Dim>& fixed_raster() const = 0;
+  /// Sweeps over the samples per evaluation: 2 where a sum over all of them comes first.
   virtual int num_passes() const { return 1; }
   virtual std::unique_ptr<Sums> new_sums() const { return std::make_unique<Sums>(); }
+  /// Adds what a row contributes to the pass to `sums`; the last pass writes the row's forces.
   virtual void evaluate_row(int pass, const MappedRow<Dim>& row, const ForceRow<Dim>& out,
                             Sums& sums) const = 0;
   /// After the last pass: the energy E. @throws SolverError when fewer than a quarter of the samples

@@ -5,11 +5,13 @@
 
 namespace crease {
 
+/// When to stop.
 struct ConjugateGradientOptions {
   double tolerance = 0.1;  ///< stop at this value of sqrt(r^T z) relative to its first value
   int max_iterations = 12;
 };
 
+/// The last iterate, and why it is the last.
 struct ConjugateGradientResult {
   Eigen::VectorXd x;
   int iterations = 0;

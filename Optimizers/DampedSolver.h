@@ -22,6 +22,7 @@ enum class LinearSolver {
   kScalarPreconditionedCg
 };
 
+/// How systems are solved, and how exactly.
 struct LinearSolverOptions {
   LinearSolver kind = LinearSolver::kScalarPreconditionedCg;
   double cg_tolerance = 0.1;   ///< of the preconditioned residual, relative to its first norm

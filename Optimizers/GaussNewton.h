@@ -9,6 +9,7 @@ namespace crease {
 
 class Minimization;
 
+/// Damping, shortening and the linear systems.
 struct GaussNewtonOptions {
   LinearSolverOptions linear_solver = {};
   double initial_damping = 1e-3;  ///< mu, relative to the diagonal

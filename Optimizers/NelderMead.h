@@ -5,12 +5,14 @@
 
 namespace crease {
 
+/// When to stop.
 struct NelderMeadOptions {
   double size_tolerance =
       0.05;  ///< stop when the simplex is smaller (mean distance from its centre)
   int max_evaluations = 500;
 };
 
+/// The best point found.
 struct NelderMeadResult {
   Eigen::VectorXd x;
   double value = 0.0;

@@ -50,6 +50,7 @@ struct IterationRecord {
   double seconds = 0.0;       ///< since the start
 };
 
+/// The last point, and how it was reached.
 struct OptimizerResult {
   Eigen::VectorXd x;  ///< satisfies the constraints, whatever the reason for stopping
   double value = 0.0;

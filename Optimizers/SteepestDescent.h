@@ -4,6 +4,7 @@
 
 namespace crease {
 
+/// How long steps are tried.
 struct SteepestDescentOptions {
   double first_step = 1.0;  ///< step_length() of the very first trial
   double sufficient_decrease =

@@ -41,6 +41,7 @@ struct LabelOverlap {
   double hausdorff_95_mm = 0;
 };
 
+/// det grad T over the samples.
 template <int Dim>
 struct JacobianEvaluation {
   double minimum = 0, maximum = 0, mean = 0;
@@ -58,6 +59,7 @@ struct MatchEvaluation {
   double ncc_before = 0, ncc_after = 0;  ///< 0 where an image is constant
 };
 
+/// What was measured; parts without data are empty.
 template <int Dim>
 struct Evaluation {
   std::int64_t samples = 0;  ///< in the mask

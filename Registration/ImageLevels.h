@@ -18,6 +18,7 @@ struct ImageLevel {
   std::shared_ptr<const Interpolator<Dim>> moving_mask;  ///< null without a mask
 };
 
+/// How levels are filtered and read.
 struct ImageLevelOptions {
   InterpolationKind interpolation = InterpolationKind::kCubic;
   /// Low-pass [1 2 1]/4 of both images at the finest level: the gradient of a noisy moving image

@@ -14,9 +14,12 @@ namespace crease {
 template <int Dim>
 using GivenMap = std::optional<AffineMap<Dim>>;
 
+/// Where the search for A starts: centres of mass, of the images, a fit to landmarks, or the identity.
 enum class AlignmentStart { kMoments, kCentres, kLandmarks, kIdentity };
+/// Which maps are searched; none: the start is kept.
 enum class AlignmentSearch { kNone, kRigid, kAffine };
 
+/// How A is found.
 struct AlignmentOptions {
   AlignmentStart start = AlignmentStart::kMoments;
   AlignmentSearch search = AlignmentSearch::kNone;
@@ -34,6 +37,7 @@ struct AlignmentReport {
   int evaluations = 0;
 };
 
+/// A, and how it was found.
 template <int Dim>
 struct Alignment {
   AffineMap<Dim> map;

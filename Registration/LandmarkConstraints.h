@@ -12,10 +12,12 @@
 
 namespace crease {
 
+/// Landmarks without a sigma of their own: met exactly, or up to their uncertainty.
 enum class LandmarkMode { kExact, kSoft };
 /// What to do with exact landmarks that contradict each other.
 enum class LandmarkConflict { kError, kCompromise };
 
+/// How landmarks are to be met.
 struct LandmarkOptions {
   LandmarkMode mode = LandmarkMode::kExact;
   LandmarkConflict conflict = LandmarkConflict::kError;

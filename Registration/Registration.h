@@ -70,6 +70,7 @@ struct LevelReport {
   std::vector<double> energy_history;
 };
 
+/// The map, and what is known about it and the way to it.
 template <int Dim>
 struct RegistrationResult {
   std::shared_ptr<const SplineTransform<Dim>> transform;
@@ -107,20 +108,31 @@ class Registration {
   /// A registration by landmarks and energies alone, without images.
   Registration();
 
+  /// Samples count where the mask is 1.
   Registration& fixed_mask(Mask<Dim> mask);
+  /// Points of the moving image count where the mask is 1, with a soft edge.
   Registration& moving_mask(Mask<Dim> mask);
+  /// Between the pixels of the moving image; the default is cubic.
   Registration& interpolation(InterpolationKind kind);
   /// How A is found; the default starts from the centres of mass and stays there (no search).
   Registration& alignment(AlignmentOptions options);
   /// A is given.
   Registration& initial(AffineMap<Dim> map);
+  /// Of u; needed.
   Registration& basis(std::shared_ptr<const SplineBasis<Dim>> basis);
+  /// How images are compared; the default is ssd().
   Registration& metric(MetricFactory<Dim> factory);
+  /// Of the metric, 0 or more; the default is 1. @throws InvalidInput for other values.
   Registration& image_weight(double alpha);
+  /// Adds an energy; its weight is 0 or more. The schedule knows the name "bending".
   Registration& energy(std::string name, double weight, EnergyFactory<Dim> factory);
+  /// Pairs to be met, exactly unless the options or a sigma say otherwise.
   Registration& landmarks(Landmarks<Dim> landmarks, LandmarkOptions options = {});
+  /// How exact landmarks are eliminated; the results are the same.
   Registration& null_space(NullSpaceKind kind);
+  /// The default is Gauss-Newton with what suits the energies.
   Registration& optimizer(std::shared_ptr<const Optimizer> optimizer);
+  /// @throws InvalidInput for levels outside 1 to 12 or a factor that is not positive.
   Registration& schedule(Schedule schedule);
 
   /// @throws InvalidInput, SolverError; see the parts.

@@ -18,6 +18,7 @@ struct RegistrationParts {
   std::shared_ptr<const SplineBasis<Dim>> basis;
   MetricFactory<Dim> metric = ssd<Dim>();
   double image_weight = 1;
+  /// An energy to be made, and its weight.
   struct WeightedFactory {
     std::string name;
     double weight = 1;

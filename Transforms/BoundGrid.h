@@ -63,7 +63,8 @@ class BoundGrid {
   /// Sets inside[i] = 1 for the samples of the row in the domain, 0 for the others (size[0] entries).
   virtual void coverage(std::int64_t row, std::span<std::uint8_t> inside) const = 0;
 
-  /// @param displacements  Dim x num_control_points: the control points phi, mm.
+  /// Control points as the passes below want them.
+  /// @param control_points  Dim x num_control_points: phi, mm.
   virtual std::unique_ptr<Coefficients> prepare(
       const Eigen::Ref<const ControlPoints<Dim>>& control_points) const = 0;
   /// Writes component a of u to out[a][i] for all i in row_range(row); samples there that are outside
@@ -71,6 +72,7 @@ class BoundGrid {
   virtual void map_row(const Coefficients& coefficients, std::int64_t row,
                        const std::array<float*, Dim>& out) const = 0;
 
+  /// Sums at zero, for one thread.
   virtual std::unique_ptr<Accumulator> new_accumulator() const = 0;
   /// Adds the row's forces: force[a][i] for i in row_range(row); forces outside the domain count nothing.
   virtual void add_row(Accumulator& sums, std::int64_t row,

@@ -27,12 +27,14 @@ class Transform {
     Matrix<OutDim, InDim> jacobian;  ///< spatial_jacobian(x)
     bool in_domain = true;
   };
+  /// map, spatial_jacobian and in_domain at x.
   virtual Sample sample(const Point<InDim>& x) const {
     return {map(x), spatial_jacobian(x), in_domain(x)};
   }
   /// Whether T is defined by its spline at x; outside, `map` continues as its class documents.
   virtual bool in_domain(const Point<InDim>&) const { return true; }
 
+  /// What can be varied; each class says what it is and in which order.
   virtual Eigen::Index num_parameters() const = 0;
   virtual Eigen::VectorXd parameters() const = 0;
   /// @throws InvalidInput when the size is not num_parameters() or an entry is not finite.

@@ -12,7 +12,7 @@ int main() {
       .energy("bending", default_bending_weight(*domain.basis), bending<2>(body_weights<2>()))
       .energy("rigidity", 1, rigidity<2>())
       .landmarks(read_landmarks<2>("landmarks.csv"))
-      .schedule({.levels = 3});
+      .schedule({.levels = 3, .adapt_weights = true});
   const auto result = registration.run();
   return result.improved ? 0 : 1;
 }

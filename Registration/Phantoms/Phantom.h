@@ -42,6 +42,7 @@ struct Phantom {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
+/// What is drawn.
 struct PhantomOptions {
   int size = 0;            ///< pixels per axis, 64 to 4096; 0: the kind's default
   std::uint64_t seed = 1;  ///< of texture and noise; other than 1: moves the bodies a little, too

@@ -15,6 +15,7 @@ namespace crease {
 /// the bands; so does rigidity those without a body side.
 class CreaseBands {
  public:
+  /// Where one crease edge turns.
   struct Band {
     std::array<int, 2> vertices{};
     bool body_side = false;

@@ -14,6 +14,7 @@ namespace crease {
 /// corners collapsed (boundary values then depend on the border's control points alone); or all onto the vertex.
 enum class BorderRule { outside, on_straight_border, collapsed };
 
+/// How far from their vertices knots lie, and what creases do to them.
 struct KnotOptions {
   int degree = 3;
   /// Continuous derivatives away from creases, 0 to degree - 1; -1: degree - 1. With less, the last of
@@ -48,6 +49,7 @@ enum class VertexRule {
 inline constexpr int kNumVertexRules = 11;
 std::string to_string(VertexRule rule);
 
+/// What was decided at one vertex.
 struct VertexPlan {
   VertexRule rule = VertexRule::inner;
   double radius = 0;        ///< mm, after halving
@@ -74,6 +76,7 @@ struct FeaturePlan {
 };
 std::ostream& operator<<(std::ostream& stream, const FeaturePlan& plan);
 
+/// The knots, and how they came to lie where they do.
 struct PlacedKnots {
   KnotNet<2> net;
   FeaturePlan plan;

@@ -10,6 +10,7 @@
 
 namespace crease {
 
+/// How outlines are smoothed and sampled; lengths as said.
 struct LabelOutlineOptions {
   /// Edge length of the mesh to be made, mm: sets the smallest gap; 0: not known.
   double edge_length = 0;
@@ -23,6 +24,7 @@ struct LabelOutlineOptions {
   double smallest_gap = -1;      ///< mm; nearer bodies share a border; -1: a quarter of edge_length
 };
 
+/// The outlines, and what was left out.
 struct LabelOutlines {
   std::vector<FeatureLine> lines;
   std::vector<std::string> warnings;

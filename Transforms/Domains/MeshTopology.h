@@ -10,6 +10,7 @@ namespace crease {
 /// Who touches whom in a triangulation: triangles at a vertex, edges, the border.
 class MeshTopology {
  public:
+  /// An edge of the mesh and the triangles beside it.
   struct Edge {
     std::array<int, 2> vertices{};           ///< ascending
     std::array<int, 2> triangles{{-1, -1}};  ///< the second is -1 on the border

@@ -7,6 +7,7 @@
 
 namespace crease {
 
+/// As KnotOptions, for tetrahedra.
 struct VolumeKnotOptions {
   int degree = 2;
   int smoothness = -1;  ///< as in KnotOptions

@@ -7,6 +7,7 @@
 
 namespace crease {
 
+/// How E_R is differentiated and integrated.
 template <int Dim>
 struct RigidityOptions {
   /// The true Hessian, which may be indefinite, instead of Gauss-Newton's.
@@ -69,6 +70,7 @@ class RigidityEnergy final : public Energy<Dim> {
   };
   /// Patches of one region; a patch of a basis without regions stands on its own.
   struct Body {
+    /// Of two control points.
     struct Coupling {
       int i, k;         // i >= k
       Matrix<Dim> sum;  // M_ik

@@ -7,7 +7,8 @@
 #       pictures, which comments name: <!-- picture: FILE WIDTH IN ... --> (see small_picture). A block
 #       marked ```sh fails ends with an error; its message is part of the output.
 #   Documentation/make-pictures.sh --check FOLDER [--build DIR] [PAGE ...]
-#       only runs them, in FOLDER, on phantoms of 96 pixels and coarse meshes, and changes nothing.
+#       only runs them, in a new folder per page in FOLDER, on phantoms of 96 pixels and coarse meshes, and
+#       changes nothing.
 #
 # The target `guide` builds what this needs and calls it; the tests call it with --check.
 set -euo pipefail
@@ -54,14 +55,14 @@ small_crease='crease() {
 run_block() {
   local code=0 prelude=$quiet_crease
   if [[ -n $check ]]; then prelude=$small_crease; fi
-  output=$(bash -euo pipefail -c "$prelude"$'\n'"$2" 2>"$scratch/errors") || code=$?
+  output=$(bash -euo pipefail -c "$prelude"$'\n'"$2" 2>"$errors") || code=$?
   if [[ $3 == " fails" ]]; then
-    output+=$(<"$scratch/errors")
+    output+=$(<"$errors")
     if [[ $code -ne 0 ]]; then code=0; else code=1; fi
   fi
   if [[ $code -ne 0 ]]; then
     printf '%s: these commands do not do what the page says:\n%s\n%s\n' "$1" "$2" \
-      "$(<"$scratch/errors")" >&2
+      "$(<"$errors")" >&2
     exit 1
   fi
   output=$(sed -E 's/, [0-9.]+ s$//' <<<"$output")
@@ -108,7 +109,8 @@ renewed() {
 }
 
 for page in "${pages[@]}"; do
-  name=$(basename "$page" .md)
+  name=$(basename "$page" .md) errors=$scratch/$name.errors
+  rm -rf "${scratch:?}/$name"
   mkdir -p "$scratch/$name"
   if [[ -z $check ]]; then echo "$name"; fi
   (cd "$scratch/$name" && renewed "$page") >"$scratch/$name.md"

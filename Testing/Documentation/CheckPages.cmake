@@ -1,7 +1,9 @@
-# cmake -D ROOT=<source tree> -P CheckPages.cmake: fails when a page links to a file that is not there, when
-# a picture of the guide is not made by a page's commands or larger than 120 KB, or all are above 1.5 MB.
+# cmake -D ROOT=<source tree> -D "RUN=<pages whose commands are tests, from ROOT, blanks between them>" -P CheckPages.cmake:
+# fails when a page links to a file that is not there, when a page with commands is not among the tests, when a
+# picture of the guide is not made by a page's commands or larger than 120 KB, or all are above 1.5 MB.
 cmake_minimum_required(VERSION 3.25)
 
+string(REPLACE " " ";" run "${RUN}")
 file(GLOB pages ${ROOT}/*.md ${ROOT}/Documentation/*.md ${ROOT}/Documentation/guide/*.md)
 set(made)
 foreach(page IN LISTS pages)
@@ -15,6 +17,10 @@ foreach(page IN LISTS pages)
       message(SEND_ERROR "${page} links to ${link}, which is not there")
     endif()
   endforeach()
+  cmake_path(RELATIVE_PATH page BASE_DIRECTORY ${ROOT} OUTPUT_VARIABLE name)
+  if(text MATCHES "```sh" AND NOT name IN_LIST run)
+    message(SEND_ERROR "${name} shows commands that no test runs")
+  endif()
   string(REGEX MATCHALL "<!-- picture: [^ ]+" comments "${text}")
   foreach(comment IN LISTS comments)
     string(SUBSTRING ${comment} 14 -1 picture)

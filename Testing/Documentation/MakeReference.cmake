@@ -1,12 +1,11 @@
-# cmake -D ROOT=<source tree> -D PUBLIC=<installed headers, from ROOT> -D FOLDER=<where to> -D VERSION=<of crease>
-# -P MakeReference.cmake: makes FOLDER/html with doxygen; fails when a comment is wrong, or a type or a function of
-# the namespace has none. Members of classes need none where their names tell.
+# cmake -D ROOT=<source tree> -D "PUBLIC=<installed headers, from ROOT, blanks between them>" -D FOLDER=<where to>
+# -D VERSION=<of crease> -D DOXYGEN=<program> -P MakeReference.cmake: makes FOLDER/html; fails when a comment is
+# wrong, or a type or a function of the namespace has none. Members of classes need none where their names tell.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
-list(TRANSFORM PUBLIC PREPEND ${ROOT}/)
-string(REPLACE ";" " " headers "${PUBLIC}")
+string(REGEX REPLACE "([^ ]+)" "${ROOT}/\\1" headers "${PUBLIC}")
 set(ENV{CREASE_HEADERS} "${headers}")
 set(ENV{CREASE_REFERENCE} ${FOLDER})
 set(ENV{CREASE_ROOT} ${ROOT})

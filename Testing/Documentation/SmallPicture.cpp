@@ -57,7 +57,7 @@ Picture joined(const std::vector<Picture>& pictures) {
   return result;
 }
 
-/// Along rows (`stride` 1) or columns: each new sample is the mean over the old ones that it covers.
+/// Along rows: each new pixel is the mean over the old ones that it covers.
 Picture shrunk_to_width(const Picture& picture, int width) {
   Picture result{width, picture.height, {}};
   result.rgb.resize(std::size_t{3} * result.width * result.height);

@@ -11,15 +11,6 @@ namespace crease {
 /// @throws UsageError naming the option when its folder does not exist or the path is a folder itself.
 void check_output_file(const std::string& option, const std::filesystem::path& file);
 
-/// Lets `write` make a file under a temporary name beside it, with the same extension, and renames it:
-/// a file under its own name is always complete.
-/// @throws FileError naming the file when it cannot be written.
-void write_file(const std::filesystem::path& file,
-                const std::function<void(const std::filesystem::path& temporary)>& write);
-
-/// The same for a text.
-void write_text(const std::filesystem::path& file, const std::string& text);
-
 /// The folder of one run's results. A folder with result.json is complete: opening it removes a
 /// result.json and temporary files that an earlier run left, and finish() writes the new one last.
 class OutputFolder {

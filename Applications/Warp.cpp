@@ -15,6 +15,7 @@
 #include "Applications/RunReport.h"
 #include "Applications/TransformInput.h"
 #include "Core/Parallel.h"
+#include "Core/WholeFile.h"
 #include "Geometry/SurfaceMeshFile.h"
 #include "Images/MakeInterpolator.h"
 #include "Images/Resample.h"
@@ -161,8 +162,7 @@ void warp_image(const WarpCommand& c, InputFiles& input, const Raster<Dim>& refe
   };
   const Image<float, Dim> warped = warped_values(c, moving.image, reference, finite_map);
   const PixelType type = writable_type(*c.output_image, moving.pixel_type);
-  write_file(*c.output_image,
-             [&](const std::filesystem::path& file) { write_image(file, warped, type); });
+  write_image(*c.output_image, warped, type);
   result.figures["output_image"] = *c.output_image;
   result.summary += fmt::format("image: {}\n", *c.output_image);
 }
@@ -180,8 +180,7 @@ void write_displacement(const WarpCommand& c, const Raster<Dim>& reference,
     }
   });
   for (const Vector<Dim>& u : field.values()) result.unresolved += u.allFinite() ? 0 : 1;
-  write_file(*c.displacement,
-             [&](const std::filesystem::path& file) { write_displacement_field(file, field); });
+  write_displacement_field(*c.displacement, field);
   result.figures["displacement"] = *c.displacement;
   result.summary += fmt::format("displacement: {}\n", *c.displacement);
 }
@@ -206,7 +205,7 @@ void map_points(const WarpCommand& c, RunReport& report, const PointMap<Dim>& ma
     if (named) text += "," + table.text(row, "name");
     text += "\n";
   }
-  write_text(*c.output_points, text);
+  write_whole_file(*c.output_points, text);
   result.figures["output_points"] = *c.output_points;
   result.figures["num_points"] = table.num_rows();
   result.summary += fmt::format("{} points: {}\n", table.num_rows(), *c.output_points);
@@ -221,8 +220,7 @@ void map_mesh(const WarpCommand& c, RunReport& report, const PointMap<Dim>& map,
     p.head<Dim>() = map(p.head<Dim>());
     if (!p.allFinite()) ++result.unresolved;
   }
-  write_file(*c.output_mesh,
-             [&](const std::filesystem::path& file) { write_surface_mesh(file, mesh); });
+  write_surface_mesh(*c.output_mesh, mesh);
   result.figures["output_mesh"] = *c.output_mesh;
   result.figures["num_vertices"] = mesh.vertices.size();
   result.summary += fmt::format("{} vertices: {}\n", mesh.vertices.size(), *c.output_mesh);

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "Core/Error.h"
+#include "Core/WholeFile.h"
 
 namespace crease {
 namespace {
@@ -253,7 +255,7 @@ SurfaceMesh read_surface_mesh(const fs::path& path) {
 void write_surface_mesh(const fs::path& path, const SurfaceMesh& mesh) {
   const Format format = known_format(path);
   const bool is_obj = format == Format::kObj;
-  std::ofstream stream(path);
+  std::ostringstream stream;
   stream.precision(17);
   write_header(stream, format, mesh);
   for (const auto& p : mesh.vertices) {
@@ -268,8 +270,7 @@ void write_surface_mesh(const fs::path& path, const SurfaceMesh& mesh) {
     for (int v : face) stream << ' ' << (is_obj ? v + 1 : v);
     stream << '\n';
   }
-  stream.close();
-  if (!stream) throw FileError(message(path.string(), ": the file cannot be written"));
+  write_whole_file(path, stream.str());
 }
 
 }  // namespace crease

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "Images/Files/AtomicWrite.h"
+#include "Core/WholeFile.h"
 #include "Images/Files/FileBytes.h"
 #include "Images/Files/FileChecks.h"
 #include "Images/Files/ItkImageFile.h"
@@ -45,7 +45,7 @@ RawImage raw_header(const Raster<Dim>& raster, ImageFormat format, PixelType typ
 }
 
 void write_raw(const std::filesystem::path& path, ImageFormat format, const RawImage& raw) {
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
+  write_whole_file(path, [&](const std::filesystem::path& temporary) {
     auto name = temporary.filename().string();
     if (format == ImageFormat::kNifti) {  // ITK knows its name in small letters only
       std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });

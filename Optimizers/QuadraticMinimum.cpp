@@ -15,7 +15,8 @@ Eigen::VectorXd stack(const RowMatrix& rows) {
 
 }  // namespace
 
-QuadraticMinimizer::QuadraticMinimizer(Eigen::SparseMatrix<double> A, const NullSpace& null_space)
+QuadraticMinimizer::QuadraticMinimizer(const Eigen::SparseMatrix<double>& A,
+                                       const NullSpace& null_space)
     : null_space_(null_space), scalar_(A.rows() == null_space.num_rows()) {
   const Eigen::Index k = null_space.num_columns();
   if (!scalar_ && A.rows() != null_space.full_size()) {

@@ -16,7 +16,7 @@ class QuadraticMinimizer {
   ///           acts on each of the k columns and is factored once for all.
   /// @param null_space  must outlive this.
   /// @throws InvalidInput when sizes differ, SolverError when N^T A N is not positive definite.
-  QuadraticMinimizer(Eigen::SparseMatrix<double> A, const NullSpace& null_space);
+  QuadraticMinimizer(const Eigen::SparseMatrix<double>& A, const NullSpace& null_space);
 
   /// @param b  full_size() numbers, stacked like x.
   Eigen::VectorXd minimum(const Eigen::Ref<const Eigen::VectorXd>& b) const;

@@ -255,6 +255,25 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
   return result;
 }
 
+template <int Dim>
+std::shared_ptr<const LandmarkEnergy<Dim>> soft_landmark_energy(const Landmarks<Dim>& landmarks,
+                                                                const SplineBasis<Dim>& basis,
+                                                                const AffineMap<Dim>& affine,
+                                                                const LandmarkOptions& options) {
+  const auto exact = exact_landmarks(landmarks, options.mode);
+  std::vector<Point<Dim>> fixed, moving;
+  std::vector<double> sigma_mm;
+  for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
+    if (std::binary_search(exact.begin(), exact.end(), static_cast<int>(j))) continue;
+    const bool own = j < landmarks.sigma_mm.size() && std::isfinite(landmarks.sigma_mm[j]);
+    fixed.push_back(landmarks.fixed[j]);
+    moving.push_back(landmarks.moving[j]);
+    sigma_mm.push_back(own ? landmarks.sigma_mm[j] : options.sigma_mm);
+  }
+  if (fixed.empty()) return nullptr;
+  return std::make_shared<const LandmarkEnergy<Dim>>(basis, affine, fixed, moving, sigma_mm);
+}
+
 template std::vector<int> exact_landmarks<2>(const Landmarks<2>&, LandmarkMode);
 template std::vector<int> exact_landmarks<3>(const Landmarks<3>&, LandmarkMode);
 template std::optional<LandmarkContradiction> find_contradiction<2>(const Landmarks<2>&,
@@ -275,5 +294,14 @@ template LandmarkConstraints<3> make_landmark_constraints<3>(const Landmarks<3>&
                                                              const SplineBasis<3>&,
                                                              const AffineMap<3>&,
                                                              const LandmarkOptions&, NullSpaceKind);
+
+template std::shared_ptr<const LandmarkEnergy<2>> soft_landmark_energy<2>(const Landmarks<2>&,
+                                                                          const SplineBasis<2>&,
+                                                                          const AffineMap<2>&,
+                                                                          const LandmarkOptions&);
+template std::shared_ptr<const LandmarkEnergy<3>> soft_landmark_energy<3>(const Landmarks<3>&,
+                                                                          const SplineBasis<3>&,
+                                                                          const AffineMap<3>&,
+                                                                          const LandmarkOptions&);
 
 }  // namespace crease

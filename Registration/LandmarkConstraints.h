@@ -8,6 +8,7 @@
 #include "Optimizers/NullSpace.h"
 #include "Registration/Landmarks.h"
 #include "Transforms/AffineMap.h"
+#include "Transforms/Energies/LandmarkEnergy.h"
 #include "Transforms/Splines/SplineBasis.h"
 
 namespace crease {
@@ -78,6 +79,14 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
                                                    const LandmarkOptions& options,
                                                    NullSpaceKind kind);
 
+/// The energy of the landmarks that are met only up to their uncertainty (their own sigma_mm, else the
+/// option's); null where there are none.
+template <int Dim>
+std::shared_ptr<const LandmarkEnergy<Dim>> soft_landmark_energy(const Landmarks<Dim>& landmarks,
+                                                                const SplineBasis<Dim>& basis,
+                                                                const AffineMap<Dim>& affine,
+                                                                const LandmarkOptions& options);
+
 extern template std::vector<int> exact_landmarks<2>(const Landmarks<2>&, LandmarkMode);
 extern template std::vector<int> exact_landmarks<3>(const Landmarks<3>&, LandmarkMode);
 extern template std::optional<LandmarkContradiction> find_contradiction<2>(const Landmarks<2>&,
@@ -100,5 +109,9 @@ extern template LandmarkConstraints<3> make_landmark_constraints<3>(const Landma
                                                                     const AffineMap<3>&,
                                                                     const LandmarkOptions&,
                                                                     NullSpaceKind);
+extern template std::shared_ptr<const LandmarkEnergy<2>> soft_landmark_energy<2>(
+    const Landmarks<2>&, const SplineBasis<2>&, const AffineMap<2>&, const LandmarkOptions&);
+extern template std::shared_ptr<const LandmarkEnergy<3>> soft_landmark_energy<3>(
+    const Landmarks<3>&, const SplineBasis<3>&, const AffineMap<3>&, const LandmarkOptions&);
 
 }  // namespace crease

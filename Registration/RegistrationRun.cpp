@@ -9,36 +9,16 @@
 #include "Images/IntensityRange.h"
 #include "Metrics/TargetDisplacement.h"
 #include "Optimizers/GaussNewton.h"
-#include "Registration/BendingWeight.h"
 #include "Registration/OpticalFlow.h"
 #include "Registration/SamplesInside.h"
 #include "Registration/StartingPoint.h"
-#include "Transforms/Energies/LandmarkEnergy.h"
 #include "Transforms/JacobianMap.h"
 
 namespace crease {
 namespace {
 
-constexpr double kLeastBending = 1e-6,
-                 kMostBending = 1e-1;  // times h^2: the range of balanced weights
-constexpr int kMostBalancings = 6;     // coarser levels included
-constexpr int kMostStiffenings = 4;    // of a map that folds
-constexpr double kStiffening = 4;
 constexpr int kTrialIterations = 2;      // that decide which start is followed
 constexpr int kLargestFlowImage = 1200;  // pixels: larger images give their flow at half the size
-
-/// Samples that lie in the domain of the bound grid keep their weight.
-template <int Dim>
-std::vector<float> weights_in_domain(const BoundGrid<Dim>& grid, std::vector<float> weights) {
-  const auto width = static_cast<std::size_t>(grid.raster().size[0]);
-  std::vector<std::uint8_t> inside(width);
-  for (std::int64_t r = 0; r < grid.raster().num_rows(); ++r) {
-    grid.coverage(r, inside);
-    float* row = weights.data() + static_cast<std::size_t>(r) * width;
-    for (std::size_t i = 0; i < width; ++i) row[i] *= static_cast<float>(inside[i]);
-  }
-  return weights;
-}
 
 template <int Dim>
 Image<float, Dim> scaled(const Image<float, Dim>& image, double factor) {
@@ -85,11 +65,7 @@ template <int Dim>
 void RegistrationRun<Dim>::normalise_images() {
   const IntensityRange range = intensity_percentiles(*parts_.fixed, parts_.fixed_mask_pointer());
   const IntensityRange all = intensity_range(*parts_.fixed, parts_.fixed_mask_pointer());
-  const double width = range.constant() ? all.width() : range.width();
-  if (!(width > 0)) {
-    throw InvalidInput(message("registration: the fixed image is constant (", all.lower,
-                               ") inside the mask; there is nothing to register"));
-  }
+  const double width = range.constant() ? all.width() : range.width();  // checked to be above 0
   fixed_ = scaled(*parts_.fixed, 1 / width);
   moving_ = scaled(*parts_.moving, 1 / width);
 }
@@ -125,24 +101,16 @@ void RegistrationRun<Dim>::make_constraints() {
 
 template <int Dim>
 void RegistrationRun<Dim>::collect_energies() {
+  if (parts_.schedule.adapt_weights && parts_.has_images()) {
+    weights_.emplace(parts_.landmark_options.weight, parts_.basis->mean_edge_length());
+  }
   for (const auto& [name, weight, factory] : parts_.energies) {
     energies_.push_back({name, weight, factory(*parts_.basis, affine_)});
   }
-  const Landmarks<Dim>& all = parts_.landmarks;
-  const auto exact = exact_landmarks(all, parts_.landmark_options.mode);
-  std::vector<Point<Dim>> fixed, moving;
-  std::vector<double> sigma_mm;
-  for (std::size_t j = 0; j < all.fixed.size(); ++j) {
-    if (std::binary_search(exact.begin(), exact.end(), static_cast<int>(j))) continue;
-    const bool own = j < all.sigma_mm.size() && std::isfinite(all.sigma_mm[j]);
-    fixed.push_back(all.fixed[j]);
-    moving.push_back(all.moving[j]);
-    sigma_mm.push_back(own ? all.sigma_mm[j] : parts_.landmark_options.sigma_mm);
+  if (auto soft =
+          soft_landmark_energy(parts_.landmarks, *parts_.basis, affine_, parts_.landmark_options)) {
+    energies_.push_back({"landmarks", parts_.landmark_options.weight, std::move(soft)});
   }
-  if (fixed.empty()) return;
-  energies_.push_back(
-      {"landmarks", parts_.landmark_options.weight,
-       std::make_shared<LandmarkEnergy<Dim>>(*parts_.basis, affine_, fixed, moving, sigma_mm)});
 }
 
 template <int Dim>
@@ -162,7 +130,7 @@ void RegistrationRun<Dim>::make_levels() {
     level.shrink = image->shrink;
     level.bending_factor = factor;
     level.grid = parts_.basis->bind(image->fixed.raster());
-    image->weights = weights_in_domain(*level.grid, std::move(image->weights));
+    keep_samples_in_domain(*level.grid, image->weights);
     levels_.push_back(std::move(level));
     factor *= parts_.schedule.level_bending;
   }
@@ -261,8 +229,7 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
   stopping.max_iterations = max_iterations;
   if (parts_.has_images()) {
     const bool finest = level + 1 == levels_.size();
-    const bool last =
-        finest && (!parts_.schedule.adapt_weights || balanced_ >= std::ssize(levels_));
+    const bool last = finest && (!weights_ || weights_->num_balancings() >= std::ssize(levels_));
     stopping.relative_decrease = last ? 1e-3 : 3e-3;
     stopping.small_decreases = 1;
     stopping.step_length = finest ? 0.02 : 0.1;
@@ -286,20 +253,21 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
   return std::make_shared<GaussNewton>(stopping, options);
 }
 
-/// The start from which a few iterations lead to the lowest cost, with these iterations done.
+/// The first whole minimisation of a level. Of several starts the one is followed from which a few
+/// iterations lead to the lowest cost; a given optimizer goes on to its end from each.
 template <int Dim>
-typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::better_start(
-    std::size_t level, const std::vector<Phi>& candidates) {
-  if (candidates.size() == 1) return candidates.front();
-  Phi best;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Phi& start : candidates) {
-    OptimizerResult found = optimise_level(level, start, optimizer_of(level, kTrialIterations));
-    if (found.value >= lowest) continue;
-    lowest = found.value;
-    best = std::move(found.x);
+OptimizerResult RegistrationRun<Dim>::minimise_from(const std::vector<Phi>& starts, std::size_t l,
+                                                    LevelReport& level) {
+  if (starts.size() == 1) return optimise_level(l, starts.front(), optimizer_of(l));
+  OptimizerResult best;
+  best.value = std::numeric_limits<double>::infinity();
+  for (const Phi& start : starts) {
+    OptimizerResult found = optimise_level(l, start, optimizer_of(l, kTrialIterations));
+    if (found.value < best.value) best = std::move(found);
   }
-  return best;
+  if (parts_.optimizer != nullptr || cancelled_) return best;
+  book(best, level);
+  return optimise_level(l, best.x, optimizer_of(l));
 }
 
 template <int Dim>
@@ -328,10 +296,9 @@ std::map<std::string, double> RegistrationRun<Dim>::terms_at(std::size_t level, 
   return cost->terms();
 }
 
-/// Books one minimisation of a level and gives its end.
+/// Books one minimisation of a level.
 template <int Dim>
-typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::add_round(LevelReport& level,
-                                                                   OptimizerResult round) {
+void RegistrationRun<Dim>::book(const OptimizerResult& round, LevelReport& level) {
   level.iterations += round.iterations;
   level.evaluations += round.num_evaluations;
   level.factorizations += round.num_factorizations;
@@ -339,76 +306,59 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::add_round(LevelReport& 
   for (const auto& record : round.history) level.energy_history.push_back(record.value);
   result_.converged =
       round.reason != StopReason::kTimeLimit && round.reason != StopReason::kCancelled;
-  if (round.reason == StopReason::kIterationLimit) {
-    result_.warnings.push_back(message("level ", result_.levels.size() + 1, " of ", levels_.size(),
-                                       " stopped at the iteration limit (", round.iterations,
-                                       "); the result may still improve"));
+}
+
+/// Minimises on a level, anew as long as its weights change.
+template <int Dim>
+typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::solve_level(
+    std::size_t l, const std::vector<Phi>& starts) {
+  LevelReport level;
+  level.shrink = levels_[l].shrink;
+  level.terms_before = terms_at(l, starts.front());
+  OptimizerResult round = minimise_from(starts, l, level);
+  while (true) {
+    book(round, level);
+    if (round.reason == StopReason::kIterationLimit) {
+      result_.warnings.push_back(message("level ", l + 1, " of ", levels_.size(),
+                                         " stopped at the iteration limit (", round.iterations,
+                                         "); the result may still improve"));
+    }
+    level.terms_after = terms_at(l, round.x);
+    if (cancelled_ || !renew_weights(l, level, round.x)) break;
+    round = optimise_level(l, round.x, optimizer_of(l));
   }
+  result_.levels.push_back(std::move(level));
   return std::move(round.x);
 }
 
 /// Coarse levels may lead astray: no result is worse than the start.
 template <int Dim>
-void RegistrationRun<Dim>::keep_better(LevelReport& level, const Phi& start, Phi& phi) {
+void RegistrationRun<Dim>::keep_better(const Phi& start, Phi& phi) {
+  constexpr double kRounding = 1e-6;
   const auto cost = objective(levels_.back());
   const double at_start = cost->evaluate(start, nullptr, nullptr);
   const auto terms = cost->terms();
-  if (at_start >= cost->evaluate(phi, nullptr, nullptr)) return;
+  if (cost->evaluate(phi, nullptr, nullptr) <= (1 + kRounding) * at_start) return;
   phi = start;
-  level.terms_after = terms;
-  level.stopped_because = result_.stopped_because = "no better map than the start was found";
+  LevelReport& finest = result_.levels.back();
+  finest.terms_after = terms;
+  finest.stopped_because = result_.stopped_because = "no better map than the start was found";
 }
 
-/// Balances bending and soft landmarks against the noise that the level's end shows, and bends more where
-/// the map folds.
-/// Returns whether the level is worth another round.
+/// Whether the level is worth another minimisation, with other weights.
 template <int Dim>
 bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level, const Phi& phi) {
-  constexpr double kMostChange = 32, kOverRelaxation = 1.5, kLeastNoise = 1e-6;
   const Level& here = levels_[l];
-  const auto bending = std::ranges::find(energies_, "bending", &WeightedEnergy<Dim>::name);
-  if (!parts_.schedule.adapt_weights || bending == energies_.end() || here.image == nullptr) {
-    return false;
-  }
+  const auto bending = level.terms_after.find("bending");
+  if (!weights_ || bending == level.terms_after.end()) return false;
   const bool finest = l + 1 == levels_.size();
-  if (finest && folds(phi)) {
-    if (stiffened_ == kMostStiffenings) return false;
-    ++stiffened_;
-    bending->weight *= kStiffening;
-    return true;
-  }
-  if (stiffened_ > 0 || balanced_ == kMostBalancings) return false;
-  ++balanced_;
-  const double h2 = std::pow(parts_.basis->mean_edge_length(), 2);
-  const BendingBalance balance{.image_energy = level.terms_after.at("image"),
-                               .counted_measure = here.counted_measure,
-                               .correlated_measure = here.correlated_measure,
-                               .bending_energy = level.terms_after.at("bending"),
-                               .free_parameters = result_.free_parameters};
-  // Less bending roughens the motion, which asks for less again: go a little beyond what is asked for.
-  const double change = std::pow(balance.weight() / bending->weight, kOverRelaxation);
-  bool changed =
-      set_weight(*bending,
-                 std::clamp(bending->weight * std::clamp(change, 1 / kMostChange, kMostChange),
-                            kLeastBending * h2, kMostBending * h2),
-                 finest);
-  const auto landmarks = std::ranges::find(energies_, "landmarks", &WeightedEnergy<Dim>::name);
-  if (landmarks != energies_.end()) {
-    const double density = std::clamp(balance.noise_density(), kLeastNoise, 1.0);
-    changed |= set_weight(*landmarks, parts_.landmark_options.weight * density, finest);
-  }
-  return changed && finest;  // a coarser level chooses for the next one
-}
-
-/// Sets a weight unless the change is too small for another round of the finest level.
-template <int Dim>
-bool RegistrationRun<Dim>::set_weight(WeightedEnergy<Dim>& energy, double weight, bool finest) {
-  constexpr double kSmallChange = 2;
-  if (finest && weight < kSmallChange * energy.weight && weight > energy.weight / kSmallChange) {
-    return false;
-  }
-  energy.weight = weight;
-  return true;
+  if (finest && folds(phi)) return weights_->stiffen(energies_);
+  return weights_->balance({.image_energy = level.terms_after.at("image"),
+                            .counted_measure = here.counted_measure,
+                            .correlated_measure = here.correlated_measure,
+                            .bending_energy = bending->second,
+                            .free_parameters = result_.free_parameters},
+                           finest, energies_);
 }
 
 /// Whether the map turns tissue over at a sample of the second finest level.
@@ -426,23 +376,14 @@ void RegistrationRun<Dim>::optimise() {
   std::vector<Phi> candidates = starts();
   const Phi start = candidates.front();
   add_time("start");
-  Phi phi;
   for (std::size_t l = 0; l < levels_.size() && !cancelled_; ++l) {
-    LevelReport level;
-    level.shrink = levels_[l].shrink;
     choose_samples(l, candidates);
-    level.terms_before = terms_at(l, candidates.front());
-    phi = better_start(l, candidates);
-    do {
-      phi = add_round(level, optimise_level(l, phi, optimizer_of(l)));
-      level.terms_after = terms_at(l, phi);
-    } while (!cancelled_ && renew_weights(l, level, phi));
-    if (l + 1 == levels_.size()) keep_better(level, start, phi);
-    result_.levels.push_back(std::move(level));
-    candidates = {phi};
+    candidates = {solve_level(l, candidates)};
   }
+  Phi& phi = candidates.front();
+  if (result_.levels.size() == levels_.size()) keep_better(start, phi);
   add_time("optimization");
-  report(phi.size() > 0 ? phi : candidates.front());
+  report(phi);
 }
 
 template <int Dim>

@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "Optimizers/DampedSolver.h"
+#include "Registration/AdaptedWeights.h"
 #include "Registration/ImageLevels.h"
 #include "Registration/RegistrationParts.h"
 
@@ -40,12 +42,12 @@ class RegistrationRun {
   std::vector<Phi> starts();
   Phi fitted_to_flow(const Phi& near);
   void optimise();
-  Phi better_start(std::size_t level, const std::vector<Phi>& candidates);
   std::map<std::string, double> terms_at(std::size_t level, const Phi& phi);
-  Phi add_round(LevelReport& level, OptimizerResult round);
   double correlated_samples(std::size_t level) const;
-  void keep_better(LevelReport& level, const Phi& start, Phi& phi);
-  bool set_weight(WeightedEnergy<Dim>& energy, double weight, bool finest);
+  void keep_better(const Phi& start, Phi& phi);
+  Phi solve_level(std::size_t l, const std::vector<Phi>& starts);
+  OptimizerResult minimise_from(const std::vector<Phi>& starts, std::size_t l, LevelReport& level);
+  void book(const OptimizerResult& round, LevelReport& level);
   bool renew_weights(std::size_t l, const LevelReport& level, const Phi& phi);
   bool folds(const Phi& phi) const;
   OptimizerResult optimise_level(std::size_t level, const Phi& start,
@@ -70,7 +72,7 @@ class RegistrationRun {
   std::shared_ptr<DampedSolver> solver_;  // kept from level to level
   std::vector<ImageLevel<Dim>> images_;
   std::vector<Level> levels_;
-  int balanced_ = 0, stiffened_ = 0;  // how often bending was weighed anew
+  std::optional<AdaptedWeights<Dim>> weights_;  // where wanted
   RegistrationResult<Dim> result_;
 };
 

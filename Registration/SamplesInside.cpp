@@ -1,6 +1,7 @@
 #include "Registration/SamplesInside.h"
 
 #include <array>
+#include <cstdint>
 
 #include "Core/Parallel.h"
 #include "Registration/RowTiles.h"
@@ -64,6 +65,17 @@ void keep_samples_inside(const Raster<Dim>& fixed, const AffineMap<Dim>& affine,
   });
 }
 
+template <int Dim>
+void keep_samples_in_domain(const BoundGrid<Dim>& grid, std::vector<float>& weights) {
+  const auto width = static_cast<std::size_t>(grid.raster().size[0]);
+  std::vector<std::uint8_t> inside(width);
+  for (std::int64_t r = 0; r < grid.raster().num_rows(); ++r) {
+    grid.coverage(r, inside);
+    float* row = weights.data() + static_cast<std::size_t>(r) * width;
+    for (std::size_t i = 0; i < width; ++i) row[i] *= static_cast<float>(inside[i]);
+  }
+}
+
 template void keep_samples_inside<2>(const BoundGrid<2>&, const AffineMap<2>&,
                                      const Eigen::Ref<const ControlPoints<2>>&, const Raster<2>&,
                                      double, std::vector<float>&);
@@ -74,5 +86,8 @@ template void keep_samples_inside<2>(const Raster<2>&, const AffineMap<2>&, cons
                                      double, std::vector<float>&);
 template void keep_samples_inside<3>(const Raster<3>&, const AffineMap<3>&, const Raster<3>&,
                                      double, std::vector<float>&);
+
+template void keep_samples_in_domain<2>(const BoundGrid<2>&, std::vector<float>&);
+template void keep_samples_in_domain<3>(const BoundGrid<3>&, std::vector<float>&);
 
 }  // namespace crease

@@ -31,4 +31,11 @@ extern template void keep_samples_inside<2>(const Raster<2>&, const AffineMap<2>
 extern template void keep_samples_inside<3>(const Raster<3>&, const AffineMap<3>&, const Raster<3>&,
                                             double, std::vector<float>&);
 
+/// Sets the weight of every sample to 0 that lies outside the domain of the bound grid.
+template <int Dim>
+void keep_samples_in_domain(const BoundGrid<Dim>& grid, std::vector<float>& weights);
+
+extern template void keep_samples_in_domain<2>(const BoundGrid<2>&, std::vector<float>&);
+extern template void keep_samples_in_domain<3>(const BoundGrid<3>&, std::vector<float>&);
+
 }  // namespace crease

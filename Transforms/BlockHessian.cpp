@@ -6,6 +6,19 @@
 #include "Core/Parallel.h"
 
 namespace crease {
+namespace {
+
+/// First entry of column Dim k + b: the diagonal block gives Dim - b entries, each other block Dim.
+template <int Dim>
+std::vector<int> column_starts(const HessianPattern& pattern) {
+  std::vector<int> start{0};
+  for (int blocks : pattern.column_sizes()) {
+    for (int b = 0; b < Dim; ++b) start.push_back(start.back() + Dim * blocks - b);
+  }
+  return start;
+}
+
+}  // namespace
 
 HessianPattern::HessianPattern(int num_control_points,
                                const std::vector<std::pair<int, int>>& couplings) {
@@ -84,16 +97,6 @@ Eigen::SparseMatrix<double> BlockHessian<Dim>::to_sparse() const {
   Eigen::SparseMatrix<double> matrix;
   to_sparse(matrix);
   return matrix;
-}
-
-/// First entry of column Dim k + b: the diagonal block gives Dim - b entries, each other block Dim.
-template <int Dim>
-std::vector<int> column_starts(const HessianPattern& pattern) {
-  std::vector<int> start{0};
-  for (int blocks : pattern.column_sizes()) {
-    for (int b = 0; b < Dim; ++b) start.push_back(start.back() + Dim * blocks - b);
-  }
-  return start;
 }
 
 template <int Dim>

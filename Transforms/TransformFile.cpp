@@ -3,13 +3,13 @@
 #include <fstream>
 #include <limits>
 
+#include "Core/WholeFile.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/JsonReader.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/SplineBasisFile.h"
 #include "Transforms/SplineTransform.h"
-#include "Transforms/WholeFile.h"
 
 namespace crease {
 namespace {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "Core/Error.h"
+#include "Core/WholeFile.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
-#include "Transforms/WholeFile.h"
 
 namespace crease {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "Core/Error.h"
-#include "Images/Files/AtomicWrite.h"
+#include "Core/WholeFile.h"
 #include "Images/Files/FileBytes.h"
 #include "Images/Files/FileChecks.h"
 #include "Images/Files/ItkImageFile.h"

@@ -33,7 +33,7 @@ class BadOutput : public testing::RegisterFixture {
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
-      names.push_back(entry.path().string());
+      names.push_back(std::filesystem::relative(entry.path(), folder.path()).string());
     }
     std::sort(names.begin(), names.end());
     return names;
@@ -88,7 +88,7 @@ TEST_F(BadOutput, FilesOfWarp) {
       3, {"/proc/u.mha"});
   expect_refused(
       {"warp", "--transform", t, "--points", points, "--output-points", "/proc/p.csv", "--quiet"},
-      3, {"/proc/p.csv: cannot be written"});
+      3, {"/proc/p.csv: nothing can be written"});
 }
 
 TEST_F(BadOutput, FormatsThatCannotHoldTheResult) {

@@ -5,7 +5,7 @@
 
 #include <new>
 
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {

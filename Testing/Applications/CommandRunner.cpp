@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 extern char** environ;
 

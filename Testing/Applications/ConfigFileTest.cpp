@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "Applications/ExitCode.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {

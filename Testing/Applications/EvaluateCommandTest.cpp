@@ -7,7 +7,7 @@
 #include "Images/ImageFile.h"
 #include "Registration/Phantoms/Phantom.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/TransformFile.h"
 

@@ -6,7 +6,7 @@
 
 #include "Images/ImageFile.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/Domains/KnotPlacement.h"
 #include "Transforms/Domains/StructuredTriangulation.h"

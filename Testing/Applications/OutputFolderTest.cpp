@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "Applications/ExitCode.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {
@@ -15,17 +15,18 @@ using ::testing::ThrowsMessage;
 TEST(OutputFolder, RemovesAnEarlierResultAndUnfinishedFiles) {
   const testing::TemporaryFolder folder;
   folder.write("result.json", "{}");
-  folder.write(".crease-unfinished-warped.mha", "half");
-  folder.write("pictures/.crease-unfinished-grid.png", "half");
-  folder.write(".crease-aB3dEf/jacobian.mha", "half");  // of an image writer
+  folder.write(".crease-aB3dEf/jacobian.mha", "half");
+  folder.write("pictures/.crease-gH5iJk/grid.png", "half");
   folder.write("mine.txt", "kept");
+  folder.write(".crease-settings", "kept");
   const OutputFolder output(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / "result.json"));
-  for (const char* name : {".crease-unfinished-warped.mha", ".crease-aB3dEf",
-                           "pictures/.crease-unfinished-grid.png"}) {
+  for (const char* name : {".crease-aB3dEf", "pictures/.crease-gH5iJk"}) {
     EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
   }
-  EXPECT_TRUE(std::filesystem::exists(folder / "mine.txt"));
+  for (const char* name : {"mine.txt", ".crease-settings"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  }
 }
 
 TEST(OutputFolder, ShowsAFileOnlyWhenItIsComplete) {

@@ -6,7 +6,7 @@
 #include "Images/ImageFile.h"
 #include "Registration/Landmarks.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 
 namespace crease {

@@ -6,7 +6,7 @@
 
 #include "Core/Error.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {

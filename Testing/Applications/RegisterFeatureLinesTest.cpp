@@ -20,11 +20,6 @@ class RegisterFeatureLines : public testing::RegisterFixture {
                                  const std::string& header = "line,x,y\n") const {
     return {"--feature-lines", folder.write("lines.csv", header + rows), "--levels", "1"};
   }
-  nlohmann::json registered(const std::vector<std::string>& extra) const {
-    const auto finished = run(extra);
-    EXPECT_EQ(finished.code, 0) << finished.err;
-    return testing::read_result(output());
-  }
 };
 
 TEST_F(RegisterFeatureLines, LinesThatAreNone) {

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "Images/ImageFile.h"
 #include "Registration/Phantoms/Phantom.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease::testing {
 
@@ -49,6 +50,13 @@ class RegisterFixture : public ::testing::Test {
     }
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     return run_crease(arguments);
+  }
+
+  /// The result.json of a run that must succeed.
+  nlohmann::json registered(const std::vector<std::string>& extra) const {
+    const auto finished = run(extra);
+    EXPECT_EQ(finished.code, 0) << finished.err;
+    return read_result(output());
   }
 
   /// Expects that code, one line on the error stream with these texts, and no result.

@@ -11,7 +11,7 @@
 #include "Core/Error.h"
 #include "Core/Point.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 #include "Transforms/TransformFile.h"
 
 namespace crease {

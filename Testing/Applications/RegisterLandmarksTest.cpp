@@ -22,11 +22,6 @@ class RegisterLandmarks : public testing::RegisterFixture {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  nlohmann::json registered(const std::vector<std::string>& extra) const {
-    const auto finished = run(extra);
-    EXPECT_EQ(finished.code, 0) << finished.err;
-    return testing::read_result(output());
-  }
   /// Pairs at random places of a square in the middle, each moved at random by up to `shift` mm.
   static std::string random_pairs(int count, double width, double shift) {
     std::ostringstream text;

@@ -10,7 +10,7 @@
 #include "Images/ImageFile.h"
 #include "Registration/Landmarks.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {

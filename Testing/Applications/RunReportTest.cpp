@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "Applications/Version.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "Core/Error.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {

@@ -8,7 +8,7 @@
 #include "Geometry/SurfaceMeshFile.h"
 #include "Images/ImageFile.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"

@@ -13,7 +13,7 @@
 
 #include "Core/Raster.h"
 #include "Testing/Applications/CommandRunner.h"
-#include "Testing/Applications/TemporaryFolder.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease::testing {
 

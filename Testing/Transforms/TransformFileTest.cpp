@@ -174,7 +174,7 @@ TEST_F(TransformFile, NamesTheEntryAtFault) {
 
 TEST_F(TransformFile, SaysWhenItCannotWrite) {
   EXPECT_THAT([&] { save_transform(RigidTransform<2>(), file() / "below" / "a.json"); },
-              ThrowsMessage<FileError>(HasSubstr("cannot be written")));
+              ThrowsMessage<FileError>(HasSubstr("does not exist")));
 }
 
 }  // namespace crease

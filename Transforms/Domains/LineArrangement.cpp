@@ -300,8 +300,7 @@ bool Arranger::insert_crossings_once() {
 
 void Arranger::insert_crossings() {
   constexpr int kMostRounds = 100;
-  constexpr int kRoundsWithMerging =
-      20;  // bending edges to vertices near by may go round in circles
+  constexpr int kRoundsWithMerging = 20;  // bending edges to vertices may go round in circles
   for (int round = 0; round < kMostRounds; ++round) {
     if (!insert_crossings_once()) return;
     if (round == kRoundsWithMerging) near_ = 0;

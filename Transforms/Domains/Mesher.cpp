@@ -360,11 +360,13 @@ void DomainMesher::set_regions(DomainMesh& domain) const {
 
 constexpr double kTriangleTolerance = 0.05;
 
-/// Bisection on the scale of all lengths, from the mesh at scale 1; the count falls like its square.
-void search_scale(const DomainMesher& mesher, const MeshOptions& options, DomainMesh domain,
-                  DomainMesh& best, double& best_error) {
+/// Bisection on the scale of all lengths, from 1 on; the count falls like its square. Keeps the mesh whose
+/// count is nearest to the one wanted.
+void search_scale(const DomainMesher& mesher, const MeshOptions& options, DomainMesh& best,
+                  double& best_error) {
   double factor = 1, low = 0, high = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 14; ++step) {
+  for (int step = 0; step < 15; ++step) {
+    DomainMesh domain = mesher.mesh(scaled(options, factor));
     const double count = static_cast<double>(domain.mesh.simplices.size());
     const double error = std::abs(count / options.num_triangles - 1);
     if (error < best_error) {
@@ -378,7 +380,6 @@ void search_scale(const DomainMesher& mesher, const MeshOptions& options, Domain
       next = std::isinf(high) ? 2 * low : low == 0 ? high / 2 : 0.5 * (low + high);
     }
     factor = next;
-    domain = mesher.mesh(scaled(options, factor));
   }
 }
 
@@ -390,17 +391,15 @@ DomainMesh mesh_domain(const RegionOfInterest& region, const std::vector<Feature
   check_kinds_available(lines);
   const MeshOptions start = completed(region, options);
   const DomainMesher mesher(region, lines);
-  DomainMesh domain = mesher.mesh(start);
-  if (options.num_triangles == 0) return domain;
+  if (options.num_triangles == 0) return mesher.mesh(start);
   DomainMesh best;
   double best_error = std::numeric_limits<double>::infinity();
   // Coarse meshes jump over some counts; another gradation reaches them.
   for (double gradation : {1.0, 0.8, 1.25, 0.6, 1.6}) {
     MeshOptions graded = start;
     graded.gradation *= gradation;
-    search_scale(mesher, graded, std::move(domain), best, best_error);
+    search_scale(mesher, graded, best, best_error);
     if (best_error <= kTriangleTolerance) return best;
-    domain = mesher.mesh(graded);
   }
   best.warnings.push_back(message("mesh: ", options.num_triangles, " triangles were asked for, ",
                                   best.mesh.simplices.size(), " is the nearest count found."));

@@ -242,8 +242,7 @@ template <int Dim>
 void RigidityEnergy<Dim>::add_strained_hessian(const Body& body,
                                                const Eigen::Ref<const ControlPoints<Dim>>& phi,
                                                double scale, BlockHessian<Dim>& hessian) const {
-  constexpr std::size_t kChunk =
-      128;  // patches whose matrices are kept before they are added in order
+  constexpr std::size_t kChunk = 128;  // patches whose matrices wait to be added in order
   for (std::size_t begin = 0; begin < body.patches.size(); begin += kChunk) {
     std::vector<PatchSums> sums(std::min(kChunk, body.patches.size() - begin));
     parallel_for(std::ssize(sums), [&](std::int64_t n) {

@@ -8,8 +8,8 @@ namespace crease {
 struct BendingBalance {
   double image_energy = 0;     ///< 1/2 int r^2 over the samples that count, r the residual
   double counted_measure = 0;  ///< their area or volume, mm^Dim
-  double correlated_measure =
-      0;  ///< in which one sample's noise is correlated: the sample's own, times filters
+  /// In which the noise of one sample is correlated: its own, times what filters have joined.
+  double correlated_measure = 0;
   double bending_energy = 0;  ///< E_S, unweighted
   Eigen::Index free_parameters = 0;
 

@@ -1,4 +1,4 @@
-#include "Registration/BendingWeight.h"
+#include "Registration/BendingBalance.h"
 
 #include <limits>
 

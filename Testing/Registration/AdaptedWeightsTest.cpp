@@ -1,4 +1,4 @@
-#include "Registration/BendingWeight.h"
+#include "Registration/AdaptedWeights.h"
 
 #include <gtest/gtest.h>
 

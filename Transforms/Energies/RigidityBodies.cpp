@@ -161,18 +161,23 @@ bool RigidityEnergy<Dim>::add_pull(const Eigen::Ref<const ControlPoints<Dim>>& p
   return !bodies_.empty();
 }
 
-#define CREASE_INSTANTIATE(Dim)                                                                    \
-  template void RigidityEnergy<Dim>::make_bodies();                                                \
-  template Matrix<Dim> RigidityEnergy<Dim>::rotation_of(                                           \
-      const Body&, const Eigen::Ref<const ControlPoints<Dim>>&) const;                             \
-  template void RigidityEnergy<Dim>::add_rigid_hessian(const Body&, const Matrix<Dim>&, double,    \
-                                                       BlockHessian<Dim>&) const;                  \
-  template void RigidityEnergy<Dim>::add_stiffness(double, const HessianPattern&,                  \
-                                                   std::span<double>) const;                       \
-  template bool RigidityEnergy<Dim>::add_pull(const Eigen::Ref<const ControlPoints<Dim>>&, double, \
-                                              ControlPoints<Dim>&) const;
-CREASE_INSTANTIATE(2)
-CREASE_INSTANTIATE(3)
-#undef CREASE_INSTANTIATE
+template void RigidityEnergy<2>::make_bodies();
+template void RigidityEnergy<3>::make_bodies();
+template Matrix<2> RigidityEnergy<2>::rotation_of(const Body&,
+                                                  const Eigen::Ref<const ControlPoints<2>>&) const;
+template Matrix<3> RigidityEnergy<3>::rotation_of(const Body&,
+                                                  const Eigen::Ref<const ControlPoints<3>>&) const;
+template void RigidityEnergy<2>::add_rigid_hessian(const Body&, const Matrix<2>&, double,
+                                                   BlockHessian<2>&) const;
+template void RigidityEnergy<3>::add_rigid_hessian(const Body&, const Matrix<3>&, double,
+                                                   BlockHessian<3>&) const;
+template void RigidityEnergy<2>::add_stiffness(double, const HessianPattern&,
+                                               std::span<double>) const;
+template void RigidityEnergy<3>::add_stiffness(double, const HessianPattern&,
+                                               std::span<double>) const;
+template bool RigidityEnergy<2>::add_pull(const Eigen::Ref<const ControlPoints<2>>&, double,
+                                          ControlPoints<2>&) const;
+template bool RigidityEnergy<3>::add_pull(const Eigen::Ref<const ControlPoints<3>>&, double,
+                                          ControlPoints<3>&) const;
 
 }  // namespace crease

@@ -1,0 +1,69 @@
+#include "Registration/AdaptedWeights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace crease {
+namespace {
+
+constexpr int kMostBalancings = 6;   // coarser levels included
+constexpr int kMostStiffenings = 4;  // of a map that folds
+constexpr double kStiffening = 4;
+constexpr double kLeastBending = 1e-6;  // times the square of the mean edge
+constexpr double kMostBending = 1e-1;   // likewise
+constexpr double kLeastNoise = 1e-6;    // beside which soft landmarks are weighed
+constexpr double kMostChange = 32;      // of the weight of bending at once
+constexpr double kOverRelaxation = 1.5;
+
+template <int Dim>
+WeightedEnergy<Dim>* find(std::vector<WeightedEnergy<Dim>>& energies, std::string_view name) {
+  const auto found = std::ranges::find(energies, name, &WeightedEnergy<Dim>::name);
+  return found == energies.end() ? nullptr : &*found;
+}
+
+/// Sets a weight unless the change is too small for another minimisation of the finest level.
+template <int Dim>
+bool set_weight(WeightedEnergy<Dim>& energy, double weight, bool finest) {
+  constexpr double kSmallChange = 2;
+  if (finest && weight < kSmallChange * energy.weight && weight > energy.weight / kSmallChange) {
+    return false;
+  }
+  energy.weight = weight;
+  return true;
+}
+
+}  // namespace
+
+template <int Dim>
+bool AdaptedWeights<Dim>::stiffen(std::vector<WeightedEnergy<Dim>>& energies) {
+  WeightedEnergy<Dim>* bending = find(energies, "bending");
+  if (bending == nullptr || stiffened_ == kMostStiffenings) return false;
+  ++stiffened_;
+  bending->weight *= kStiffening;
+  return true;
+}
+
+template <int Dim>
+bool AdaptedWeights<Dim>::balance(const BendingBalance& found, bool finest,
+                                  std::vector<WeightedEnergy<Dim>>& energies) {
+  WeightedEnergy<Dim>* bending = find(energies, "bending");
+  if (bending == nullptr || stiffened_ > 0 || balanced_ == kMostBalancings) return false;
+  ++balanced_;
+  // Less bending roughens the motion, which asks for less again: go a little beyond what is asked for.
+  const double change = std::pow(found.weight() / bending->weight, kOverRelaxation);
+  const double wanted = bending->weight * std::clamp(change, 1 / kMostChange, kMostChange);
+  const double unit = std::pow(edge_length_, 2);
+  bool changed =
+      set_weight(*bending, std::clamp(wanted, kLeastBending * unit, kMostBending * unit), finest);
+  if (WeightedEnergy<Dim>* landmarks = find(energies, "landmarks")) {
+    const double density = std::clamp(found.noise_density(), kLeastNoise, 1.0);
+    changed |= set_weight(*landmarks, landmark_weight_ * density, finest);
+  }
+  return changed && finest;
+}
+
+template class AdaptedWeights<2>;
+template class AdaptedWeights<3>;
+
+}  // namespace crease

@@ -14,7 +14,6 @@ constexpr double kLeastBending = 1e-6;  // times the square of the mean edge
 constexpr double kMostBending = 1e-1;   // likewise
 constexpr double kLeastNoise = 1e-6;    // beside which soft landmarks are weighed
 constexpr double kMostChange = 32;      // of the weight of bending at once
-constexpr double kOverRelaxation = 1.5;
 
 template <int Dim>
 WeightedEnergy<Dim>* find(std::vector<WeightedEnergy<Dim>>& energies, std::string_view name) {
@@ -50,8 +49,7 @@ bool AdaptedWeights<Dim>::balance(const BendingBalance& found, bool finest,
   WeightedEnergy<Dim>* bending = find(energies, "bending");
   if (bending == nullptr || stiffened_ > 0 || balanced_ == kMostBalancings) return false;
   ++balanced_;
-  // Less bending roughens the motion, which asks for less again: go a little beyond what is asked for.
-  const double change = std::pow(found.weight() / bending->weight, kOverRelaxation);
+  const double change = found.weight() / bending->weight;
   const double wanted = bending->weight * std::clamp(change, 1 / kMostChange, kMostChange);
   const double unit = std::pow(edge_length_, 2);
   bool changed =

@@ -9,6 +9,7 @@
 #include "Images/IntensityRange.h"
 #include "Metrics/TargetDisplacement.h"
 #include "Optimizers/GaussNewton.h"
+#include "Registration/DeterminedParameters.h"
 #include "Registration/OpticalFlow.h"
 #include "Registration/SamplesInside.h"
 #include "Registration/StartingPoint.h"
@@ -54,6 +55,7 @@ RegistrationResult<Dim> RegistrationRun<Dim>::execute() {
   make_constraints();
   add_time("constraints");
   collect_energies();
+  make_solver();
   add_time("energies");
   make_levels();
   add_time("binding");
@@ -111,6 +113,21 @@ void RegistrationRun<Dim>::collect_energies() {
           soft_landmark_energy(parts_.landmarks, *parts_.basis, affine_, parts_.landmark_options)) {
     energies_.push_back({"landmarks", parts_.landmark_options.weight, std::move(soft)});
   }
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::make_solver() {
+  LinearSolverOptions options;
+  // A scalar factor does not see how rigidity couples coordinates; the factor of an earlier Hessian serves
+  // while bodies turn little.
+  const bool coupled = std::ranges::any_of(
+      energies_, [](const auto& energy) { return energy.energy->couples_coordinates(); });
+  if (coupled) {
+    options.kind = LinearSolver::kPreconditionedCg;
+    options.max_cg_iterations = 6;
+  }
+  if (!parts_.has_images()) options.kind = LinearSolver::kDirect;
+  solver_ = std::make_shared<DampedSolver>(options, null_space_->num_columns());
 }
 
 template <int Dim>
@@ -237,18 +254,6 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
     stopping.relative_decrease = 1e-10;  // iterations without images cost little
   }
   GaussNewtonOptions options;
-  // A scalar factor does not see how rigidity couples coordinates; the factor of an earlier Hessian serves
-  // while bodies turn little.
-  const bool coupled = std::ranges::any_of(
-      energies_, [](const auto& energy) { return energy.energy->couples_coordinates(); });
-  if (coupled) {
-    options.linear_solver.kind = LinearSolver::kPreconditionedCg;
-    options.linear_solver.max_cg_iterations = 6;
-  }
-  if (!parts_.has_images()) options.linear_solver.kind = LinearSolver::kDirect;
-  if (solver_ == nullptr) {
-    solver_ = std::make_shared<DampedSolver>(options.linear_solver, null_space_->num_columns());
-  }
   options.solver = solver_;
   return std::make_shared<GaussNewton>(stopping, options);
 }
@@ -357,8 +362,14 @@ bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level
                             .counted_measure = here.counted_measure,
                             .correlated_measure = here.correlated_measure,
                             .bending_energy = bending->second,
-                            .free_parameters = result_.free_parameters},
+                            .determined_parameters = determined_by_images(l, phi)},
                            finest, energies_);
+}
+
+template <int Dim>
+double RegistrationRun<Dim>::determined_by_images(std::size_t l, const Phi& phi) {
+  RegistrationObjective<Dim> image(pattern_, levels_[l].image, parts_.image_weight, {});
+  return determined_parameters(image, *objective(levels_[l]), phi, *null_space_, *solver_);
 }
 
 /// Whether the map turns tissue over at a sample of the second finest level.

@@ -39,6 +39,7 @@ class RegistrationRun {
   void make_levels();
   void choose_samples(std::size_t level, const std::vector<Phi>& starts);
   void collect_energies();
+  void make_solver();
   std::vector<Phi> starts();
   Phi fitted_to_flow(const Phi& near);
   void optimise();
@@ -49,6 +50,7 @@ class RegistrationRun {
   OptimizerResult minimise_from(const std::vector<Phi>& starts, std::size_t l, LevelReport& level);
   void book(const OptimizerResult& round, LevelReport& level);
   bool renew_weights(std::size_t l, const LevelReport& level, const Phi& phi);
+  double determined_by_images(std::size_t l, const Phi& phi);
   bool folds(const Phi& phi) const;
   OptimizerResult optimise_level(std::size_t level, const Phi& start,
                                  const std::shared_ptr<const Optimizer>& optimizer);

@@ -80,7 +80,8 @@ class BoundGrid {
   /// gradient (Dim x num_control_points) += sum_x F(x) B_i(x), accumulators added in the order given.
   virtual void finish(std::span<const std::unique_ptr<Accumulator>> sums,
                       Eigen::Ref<ControlPoints<Dim>> gradient) const = 0;
-  /// hessian(i, k) += sum_b scale * G_b B_i(x_b) B_k(x_b), x_b a covered sample near the block's centre.
+  /// hessian(i, k) += sum_b scale * G_b <B_i B_k>_b, the mean over one or more covered samples of the block:
+  /// the one nearest to its middle where functions vary little over a block, more where they do.
   virtual void add_curvature(const CurvatureBlocks<Dim>& blocks, double scale,
                              BlockHessian<Dim>& hessian) const = 0;
 };

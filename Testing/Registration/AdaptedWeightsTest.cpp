@@ -12,25 +12,28 @@
 namespace crease {
 namespace {
 
-// gamma E_S = 1/2 s n: twice the noise or parameters ask for twice the weight, twice the bending for half.
+// gamma E_S = 3/4 s n, s the noise of what n parameters leave of the samples: twice the residual's power asks
+// for twice the weight, twice the bending for half.
 TEST(BendingBalance, IsInProportion) {
   const BendingBalance balance{.image_energy = 3,
                                .counted_measure = 600,
                                .correlated_measure = 2,
                                .bending_energy = 5,
-                               .free_parameters = 100};
-  EXPECT_DOUBLE_EQ(balance.noise_density(), 0.02);
+                               .determined_parameters = 100};
+  EXPECT_DOUBLE_EQ(balance.noise_density(), 0.03);
+  EXPECT_DOUBLE_EQ(balance.weight(), 0.45);
   BendingBalance other = balance;
   other.image_energy *= 2;
-  EXPECT_DOUBLE_EQ(other.weight(), 2 * balance.weight());
-  other = balance;
-  other.free_parameters *= 2;
   EXPECT_DOUBLE_EQ(other.weight(), 2 * balance.weight());
   other = balance;
   other.bending_energy *= 2;
   EXPECT_DOUBLE_EQ(other.weight(), 0.5 * balance.weight());
   other.bending_energy = 0;
   EXPECT_TRUE(std::isinf(other.weight()));
+  other = balance;
+  other.determined_parameters =
+      300;  // as many as there are independent samples: a fifth still tells noise
+  EXPECT_DOUBLE_EQ(other.noise_density(), 0.1);
 }
 
 double mean_error(const Phantom& phantom, double weight, bool adapt) {

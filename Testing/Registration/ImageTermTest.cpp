@@ -18,7 +18,6 @@ namespace {
 template <int Dim>
 struct Tensor {
   static constexpr int kDim = Dim;
-  static constexpr int kBlockSample = 2;  // which sample of a block, per axis, has its basis values
   static constexpr double kHessianRounding = 1e-10;  // relative to the largest eigenvalue
   static std::shared_ptr<const SplineBasis<Dim>> basis(const Box<Dim>& box) {
     return testing::tensor_over<Dim>(box, Dim == 2 ? 6 : 3, 3);
@@ -26,7 +25,6 @@ struct Tensor {
 };
 struct Triangles {
   static constexpr int kDim = 2;
-  static constexpr int kBlockSample = 1;
   static constexpr double kHessianRounding = 1e-8;  // blocks are summed in single precision
   static std::shared_ptr<const SplineBasis<2>> basis(const Box<2>& box) {
     return testing::triangles_over(box, {.degree = 3}, 5);
@@ -124,18 +122,10 @@ TYPED_TEST(ImageTermIn, AgreesWithDoublePrecision) {
   EXPECT_LT((gradient.reshaped() - expected).norm(), 1e-5 * expected.norm());
 }
 
-// The matrix sums curvature over blocks of samples, each with the basis at one of them. Where only that
-// one counts it is the Hessian itself at zero residual: compared with differences of the gradient in
-// double precision, as far as a matrix of single precision goes.
-TYPED_TEST(ImageTermIn, CurvatureIsTheHessianAtZeroResidual) {
-  constexpr int Dim = TestFixture::kDim;
-  const Setting<TypeParam> setting;
-  MetricInput<Dim> input = setting.identical_images();
-  for (std::int64_t k = 0; k < setting.raster.num_samples(); ++k) {
-    for (int i : input.fixed.index(k)) {
-      if (i % 4 != TypeParam::kBlockSample) input.weights[static_cast<std::size_t>(k)] = 0;
-    }
-  }
+/// Compares the matrix at the identity with differences of the gradient in double precision, as far as a
+/// matrix of single precision goes.
+template <typename Kind, int Dim = Kind::kDim>
+void expect_hessian(const Setting<Kind>& setting, MetricInput<Dim> input) {
   const auto metric = std::make_shared<SumOfSquaredDifferences<Dim>>(std::move(input));
   ImageTerm<Dim> term(setting.basis->bind(setting.raster), metric, {});
   const Eigen::MatrixXd H = dense<Dim>(setting.hessian(term, setting.some_phi(0)));
@@ -155,6 +145,47 @@ TYPED_TEST(ImageTermIn, CurvatureIsTheHessianAtZeroResidual) {
     transform.add_adjoint(samples, forces, difference);
   }
   EXPECT_LT((H * direction - difference).norm(), 1e-5 * difference.norm());
+}
+
+// The matrix sums curvature over blocks of samples, with the basis of one or more of them. Of tensor splines
+// it is the middle one: where only that one counts it is the Hessian itself at zero residual.
+template <int Dim>
+void expect_hessian_of_middle_samples() {
+  constexpr int kMiddle = 2;
+  const Setting<Tensor<Dim>> setting;
+  MetricInput<Dim> input = setting.identical_images();
+  for (std::int64_t k = 0; k < setting.raster.num_samples(); ++k) {
+    for (int i : input.fixed.index(k)) {
+      if (i % 4 != kMiddle) input.weights[static_cast<std::size_t>(k)] = 0;
+    }
+  }
+  expect_hessian(setting, std::move(input));
+}
+
+TEST(ImageTerm, CurvatureIsTheHessianAtZeroResidual) {
+  expect_hessian_of_middle_samples<2>();
+  expect_hessian_of_middle_samples<3>();
+}
+
+// Where triangles are narrow every sample's basis counts, with its block's mean curvature: that of each
+// sample on a ramp.
+TEST(ImageTerm, CurvatureOfNarrowTrianglesIsTheHessianOnARamp) {
+  Setting<Triangles> setting;
+  setting.basis = testing::triangles_over(setting.raster.bounds(), {.degree = 3}, 12);
+  Image<float, 2> ramp(setting.raster);
+  for (std::int64_t k = 0; k < setting.raster.num_samples(); ++k) {
+    const auto [i, j] = ramp.index(k);
+    ramp[{i, j}] = static_cast<float>(i + 2 * j) / 256;
+  }
+  MetricInput<2> input = setting.input(ramp);
+  for (std::int64_t k = 0; k < setting.raster.num_samples(); ++k) {  // whole blocks
+    for (int i : ramp.index(k)) {
+      if (i < 4 || i >= 64) input.weights[static_cast<std::size_t>(k)] = 0;
+    }
+  }
+  input.fixed = ramp;
+  input.moving = make_interpolator(ramp, InterpolationKind::kLinear);
+  expect_hessian(setting, std::move(input));
 }
 
 // With all samples the blocks are exact for translations, which all functions of a block share, and near

@@ -43,18 +43,23 @@ std::vector<RasterTriangle> triangles_on_raster(const TriangularBSplineBasis<2>&
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto corners = simplex_corners(mesh, static_cast<int>(t));
     std::vector<KnotPlane<2>> sides;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = std::numeric_limits<double>::infinity(), high = -low, longest = 0.0;
     for (int k = 0; k < 3; ++k) {
+      const Point<2> a = raster.index(corners[k]), b = raster.index(corners[(k + 1) % 3]);
+      longest = std::max(longest, (b - a).norm());
       sides.push_back(side_through(corners[k], corners[(k + 1) % 3]));
       const double j = raster.index(corners[k])[1];
       low = std::min(low, j);
       high = std::max(high, j);
     }
     const double last = raster.size[1] - 1.0;
+    const double twice_area = signed_content<2>(corners) / raster.sample_volume();
+    const double altitude = longest > 0.0 ? twice_area / longest : 0.0;  // on the longest side
     triangles[t] = {RasterRegion(sides, raster),
                     RasterRegion(basis.patch(static_cast<int>(t)).core_sides(), raster),
                     static_cast<int>(std::clamp(std::floor(low), 0.0, last + 1.0)),
-                    static_cast<int>(std::clamp(std::ceil(high), -1.0, last))};
+                    static_cast<int>(std::clamp(std::ceil(high), -1.0, last)),
+                    altitude / basis.degree()};
   }
   return triangles;
 }

@@ -31,6 +31,7 @@ class RasterRegion {
 struct RasterTriangle {
   RasterRegion whole, core;
   int first_row = 0, last_row = -1;  ///< that the triangle may reach
+  double control_spacing = 0;        ///< of its control points, about, in samples
 };
 
 std::vector<RasterTriangle> triangles_on_raster(const TriangularBSplineBasis<2>& basis,

@@ -123,11 +123,11 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
         const auto values = basis.patch(sample->triangle).evaluate(sample->position, 0);
         const auto numbers = basis.control_points_of(sample->triangle);
         for (std::size_t k = 0; k < numbers.size(); ++k) {
-          row[place(numbers[k])] = static_cast<float>(values(k, 0));
+          row[place(numbers[k])] = sample->root_share * static_cast<float>(values(k, 0));
         }
       } else {
         for (int k = sample->start; k < sample->start + sample->count; ++k) {
-          row[place(part->points[k])] = part->weights[k];
+          row[place(part->points[k])] = sample->root_share * part->weights[k];
         }
       }
       row += group.stride;

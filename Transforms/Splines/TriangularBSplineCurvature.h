@@ -7,12 +7,13 @@
 
 namespace crease {
 
-/// The sample that stands for a block, and in a strip the basis there.
+/// A sample that stands for a block or a share of it, and in a strip the basis there.
 struct BlockSample {
   int block = 0;
   int triangle = 0;                      ///< that holds the sample
   Point<2> position = Point<2>::Zero();  ///< mm
   bool in_core = false;
+  float root_share = 1;      ///< square root of the block's share it stands for
   int start = 0, count = 0;  ///< strips: entries of BlockSamples
 };
 struct BlockSamples {

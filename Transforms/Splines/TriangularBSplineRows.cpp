@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "Core/Parallel.h"
 #include "Transforms/Splines/KnotLocator.h"
@@ -14,7 +15,8 @@ namespace {
 constexpr int kBlock = RowBand::kRows;  // bands and curvature blocks have the same height
 constexpr int kMaxStrip = 16;
 constexpr int kLanes = LanePoints::kMaxLanes;
-constexpr float kNegligible = 1e-8f;  // below the resolution of single precision next to 1
+constexpr double kStripFineness = 0.25;  // control points lie closer at creases
+constexpr float kNegligible = 1e-8f;     // below the resolution of single precision next to 1
 
 static_assert(kBlock == CurvatureBlocks<2>::kBlock);
 
@@ -257,23 +259,59 @@ class BandBuilder {
     }
   }
 
-  // The basis at the covered sample nearest to each block's centre.
+  // How far apart the samples may lie that stand for a block: functions of narrow triangles, and those in
+  // strips, vary within few samples.
+  int sampling_of(const Sample& s) const {
+    const double spacing = triangles_[s.owner].control_spacing * (s.core ? 1.0 : kStripFineness);
+    return spacing >= kBlock ? kBlock : spacing >= kBlock / 2 ? kBlock / 2 : 1;
+  }
+
+  // Each block's basis at the middle samples of its squares of `sampling` samples a side.
   void add_blocks(RowBand& band) {
-    static constexpr int kOrder[16][2] = {{1, 1}, {1, 2}, {2, 1}, {2, 2}, {0, 1}, {1, 0},
-                                          {0, 2}, {2, 0}, {1, 3}, {3, 1}, {2, 3}, {3, 2},
-                                          {0, 0}, {0, 3}, {3, 0}, {3, 3}};
     const int num_blocks = (raster_.size[0] + kBlock - 1) / kBlock;
     for (int b = 0; b < num_blocks; ++b) {
-      for (const auto& [r, c] : kOrder) {
-        const int i = b * kBlock + c;
-        if (r >= num_rows_ || i >= raster_.size[0] || sample(r, i).owner < 0) continue;
-        add_block((first_row_ / kBlock) * num_blocks + b, r, i, band.blocks);
-        break;
+      const int columns = std::min(kBlock, raster_.size[0] - b * kBlock);
+      int sampling = kBlock, covered = 0;
+      for (int r = 0; r < num_rows_; ++r) {
+        for (int c = 0; c < columns; ++c) {
+          const Sample& s = sample(r, b * kBlock + c);
+          if (s.owner < 0) continue;
+          ++covered;
+          sampling = std::min(sampling, sampling_of(s));
+        }
+      }
+      const int block = (first_row_ / kBlock) * num_blocks + b;
+      for (int r = 0; r < num_rows_ && covered > 0; r += sampling) {
+        for (int c = 0; c < columns; c += sampling) {
+          add_square(block, r, b * kBlock + c, sampling, covered, band.blocks);
+        }
       }
     }
   }
 
-  void add_block(int block, int r, int i, BlockSamples& blocks) {
+  // The covered sample nearest to the middle of a square stands for all that are covered.
+  void add_square(int block, int row, int column, int width, int covered, BlockSamples& blocks) {
+    const int last_row = std::min(row + width, num_rows_);
+    const int last_column = std::min(column + width, raster_.size[0]);
+    int count = 0, best_row = 0, best_column = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int r = row; r < last_row; ++r) {
+      for (int c = column; c < last_column; ++c) {
+        if (sample(r, c).owner < 0) continue;
+        ++count;
+        const double distance = std::hypot(r - row - width / 2.0, c - column - width / 2.0);
+        if (distance >= least) continue;
+        least = distance;
+        best_row = r;
+        best_column = c;
+      }
+    }
+    if (count == 0) return;
+    add_block(block, best_row, best_column,
+              static_cast<float>(std::sqrt(static_cast<double>(count) / covered)), blocks);
+  }
+
+  void add_block(int block, int r, int i, float root_share, BlockSamples& blocks) {
     const Sample& s = sample(r, i);
     const int start = static_cast<int>(blocks.points.size());
     if (!s.core) {
@@ -290,7 +328,7 @@ class BandBuilder {
       }
     }
     const int count = static_cast<int>(blocks.points.size()) - start;
-    blocks.samples.push_back({block, s.owner, position(r, i), s.core, start, count});
+    blocks.samples.push_back({block, s.owner, position(r, i), s.core, root_share, start, count});
   }
 
   const TriangularBSplineBasis<2>& basis_;

@@ -1,5 +1,6 @@
 #include "Applications/RegisterRun.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "Images/IntensityRange.h"
@@ -60,6 +61,17 @@ Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Di
   return found;
 }
 
+/// Area or volume of the samples that are compared, mm^Dim.
+template <int Dim>
+double compared_measure(const RegisterInput<Dim>& input) {
+  const Raster<Dim>& raster = input.fixed.image.raster();
+  const Mask<Dim>* mask = pointer(input.fixed_mask);
+  const std::int64_t samples =
+      mask == nullptr ? raster.num_samples()
+                      : std::ranges::count_if(mask->values(), [](auto v) { return v != 0; });
+  return static_cast<double>(samples) * raster.sample_volume();
+}
+
 template <int Dim>
 RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
                                     const Alignment<Dim>& alignment) {
@@ -71,8 +83,9 @@ RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const Regist
     outcome.transform = std::make_shared<AffineTransform<Dim>>(alignment.map, centre);
   }
   const AlignmentReport& found = alignment.report;
-  const double width = intensity_percentiles(input.fixed.image, pointer(input.fixed_mask)).width();
-  const double scale = width > 0 ? 1 / (width * width) : 0;
+  const double unit = intensity_unit(input.fixed.image, pointer(input.fixed_mask));
+  // From the mean of squares to half their integral in the mask, as splines have it.
+  const double scale = unit > 0 ? 0.5 * compared_measure(input) / (unit * unit) : 0;
   outcome.alignment = alignment;
   outcome.metric_before = scale * found.metric_before;
   outcome.metric_after = scale * found.metric_after;

@@ -20,7 +20,8 @@ struct RegisterOutcome {
   std::shared_ptr<const Transform<Dim>> transform;
   std::optional<CreasedDomain> domain;  ///< of a triangular B-spline
   Alignment<Dim> alignment;
-  double metric_before = 0;  ///< at the start; weighted sums as in the cost, normalised intensities
+  double metric_before =
+      0;  ///< at the start; half the integral of squares, mm^Dim, normalised intensities
   double metric_after = 0;
   std::map<std::string, double> energies;  ///< unweighted
   std::map<std::string, double> weights;   ///< of these

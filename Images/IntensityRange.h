@@ -30,6 +30,16 @@ IntensityRange intensity_percentiles(const Image<float, Dim>& image,
                                      const std::type_identity_t<Mask<Dim>>* mask = nullptr,
                                      double lower = 1, double upper = 99);
 
+/// The unit that metrics measure intensities in, so that weights mean the same for all images: from the
+/// first to the 99th percentile in the mask, or from the smallest to the largest pixel where these
+/// percentiles agree; 0 when all pixels do.
+template <int Dim>
+double intensity_unit(const Image<float, Dim>& image,
+                      const std::type_identity_t<Mask<Dim>>* mask = nullptr) {
+  const double width = intensity_percentiles(image, mask).width();
+  return width > 0 ? width : intensity_range(image, mask).width();
+}
+
 extern template IntensityRange intensity_range<2>(const Image<float, 2>&, const Mask<2>*);
 extern template IntensityRange intensity_range<3>(const Image<float, 3>&, const Mask<3>*);
 extern template IntensityRange intensity_percentiles<2>(const Image<float, 2>&, const Mask<2>*,

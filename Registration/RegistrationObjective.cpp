@@ -11,7 +11,7 @@ void require_finite(double value, const std::string& term) {
   if (std::isfinite(value)) return;
   throw SolverError(message("the ", term, " energy became ", value,
                             " during the registration; lower the weights or start closer to the "
-                            "solution (--init landmarks, more levels)"));
+                            "solution (--init landmarks, more levels)."));
 }
 
 }  // namespace

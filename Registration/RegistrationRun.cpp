@@ -65,11 +65,10 @@ RegistrationResult<Dim> RegistrationRun<Dim>::execute() {
 
 template <int Dim>
 void RegistrationRun<Dim>::normalise_images() {
-  const IntensityRange range = intensity_percentiles(*parts_.fixed, parts_.fixed_mask_pointer());
-  const IntensityRange all = intensity_range(*parts_.fixed, parts_.fixed_mask_pointer());
-  const double width = range.constant() ? all.width() : range.width();  // checked to be above 0
-  fixed_ = scaled(*parts_.fixed, 1 / width);
-  moving_ = scaled(*parts_.moving, 1 / width);
+  const double unit =
+      intensity_unit(*parts_.fixed, parts_.fixed_mask_pointer());  // checked: above 0
+  fixed_ = scaled(*parts_.fixed, 1 / unit);
+  moving_ = scaled(*parts_.moving, 1 / unit);
 }
 
 template <int Dim>

@@ -4,12 +4,15 @@
 #include <map>
 
 #include "Core/Cpu.h"
+#include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/Splines/TriangularBSplineGridKernels.h"
 
 namespace crease {
 namespace {
+
+constexpr std::uint16_t kNone = 0xffff;  // functions of a group that do not meet have no entry
 
 // The sets of control points that blocks are grouped by: one per triangle, per edge, per vertex.
 class PointSets {
@@ -86,7 +89,8 @@ struct Member {
 }  // namespace
 
 TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBasis<2>& basis,
-                                                       std::span<const BlockSamples* const> parts) {
+                                                       std::span<const BlockSamples* const> parts)
+    : pattern_(basis.pattern()) {
   const PointSets sets(basis);
   std::vector<std::vector<Member>> fixed(sets.num_fixed());
   std::map<std::vector<int>, std::vector<Member>> others;  // clouds that reach past the neighbours
@@ -101,11 +105,11 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
   std::vector<const std::vector<Member>*> members;
   for (int s = 0; s < sets.num_fixed(); ++s) {
     if (fixed[s].empty()) continue;
-    groups_.push_back({sets.set(s), 0, {}, {}});
+    groups_.push_back({sets.set(s), 0, {}, {}, {}});
     members.push_back(&fixed[s]);
   }
   for (const auto& [points, of_set] : others) {
-    groups_.push_back({points, 0, {}, {}});
+    groups_.push_back({points, 0, {}, {}, {}});
     members.push_back(&of_set);
   }
   parallel_for(std::ssize(groups_), [&](std::int64_t g) {
@@ -132,6 +136,7 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
       }
       row += group.stride;
     }
+    find_columns(group);
   });
   places_.resize(basis.num_control_points());
   for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
@@ -142,6 +147,11 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
 
 void TriangularBSplineCurvature::add(const CurvatureBlocks<2>& blocks, double scale,
                                      BlockHessian<2>& hessian) const {
+  const HessianPattern& pattern = hessian.pattern();
+  if (&pattern != pattern_.get() &&
+      (pattern.row_start() != pattern_->row_start() || pattern.columns() != pattern_->columns())) {
+    throw InvalidInput("curvature of a triangular B-spline: the Hessian has another pattern");
+  }
   const auto kernel = cpu_has_avx2() ? avx2::grid_block_products : baseline::grid_block_products;
   std::vector<std::vector<float>> sums(groups_.size());
   parallel_for(std::ssize(groups_), [&](std::int64_t g) {
@@ -162,26 +172,39 @@ void TriangularBSplineCurvature::add(const CurvatureBlocks<2>& blocks, double sc
   });
 }
 
+void TriangularBSplineCurvature::find_columns(Group& group) const {
+  const auto& points = group.control_points;
+  group.columns.reserve(points.size() * (points.size() + 1) / 2);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto begin = pattern_->columns().begin() + pattern_->row_start()[points[i]];
+    const auto end = pattern_->columns().begin() + pattern_->row_start()[points[i] + 1];
+    auto column = begin;
+    for (std::size_t k = 0; k <= i; ++k) {
+      while (column != end && *column < points[k]) ++column;
+      const bool found = column != end && *column == points[k];
+      group.columns.push_back(found ? static_cast<std::uint16_t>(column - begin) : kNone);
+    }
+  }
+}
+
 // Each row of the Hessian belongs to one call: its groups are added in their order.
 void TriangularBSplineCurvature::add_row(int control_point,
                                          const std::vector<std::vector<float>>& sums, double scale,
                                          BlockHessian<2>& hessian) const {
-  const HessianPattern& pattern = hessian.pattern();
-  const auto row_end = pattern.columns().begin() + pattern.row_start()[control_point + 1];
+  const int row_start = pattern_->row_start()[control_point];
   for (const auto& [g, position] : places_[control_point]) {
     const Group& group = groups_[g];
     const float* s = &sums[g][static_cast<std::size_t>(3) * position * group.stride];
-    auto column = pattern.columns().begin() + pattern.row_start()[control_point];
+    const std::uint16_t* columns =
+        &group.columns[static_cast<std::size_t>(position) * (position + 1) / 2];
     for (int k = 0; k <= position; ++k) {
       const double xx = s[k], xy = s[group.stride + k], yy = s[2 * group.stride + k];
-      if (xx == 0.0 && xy == 0.0 && yy == 0.0) continue;
-      const int other = group.control_points[k];
-      while (column != row_end && *column < other) ++column;
-      if (column == row_end || *column != other) {
-        pattern.slot(control_point, other);  // explains what is missing
+      if (columns[k] == kNone) {
+        if (xx != 0.0 || yy != 0.0)
+          pattern_->slot(control_point, group.control_points[k]);  // throws
         continue;
       }
-      Matrix<2>& block = hessian.block(static_cast<int>(column - pattern.columns().begin()));
+      Matrix<2>& block = hessian.block(row_start + columns[k]);
       block(0, 0) += scale * xx;
       block(0, 1) += scale * xy;
       block(1, 0) += scale * xy;

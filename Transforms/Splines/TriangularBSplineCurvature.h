@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,7 @@ class TriangularBSplineCurvature {
   TriangularBSplineCurvature(const TriangularBSplineBasis<2>& basis,
                              std::span<const BlockSamples* const> parts);
 
+  /// @throws InvalidInput when the Hessian has another pattern than the basis.
   void add(const CurvatureBlocks<2>& blocks, double scale, BlockHessian<2>& hessian) const;
 
  private:
@@ -41,13 +44,17 @@ class TriangularBSplineCurvature {
     int stride = 0;
     std::vector<int> blocks;
     std::vector<float> weights;  // stride per block
+    // Entry [i (i + 1) / 2 + k]: place of control point k in row i of the pattern, or none.
+    std::vector<std::uint16_t> columns;
   };
   struct Place {  // of a control point in a group
     int group, position;
   };
+  void find_columns(Group& group) const;
   void add_row(int control_point, const std::vector<std::vector<float>>& sums, double scale,
                BlockHessian<2>& hessian) const;
 
+  std::shared_ptr<const HessianPattern> pattern_;
   std::vector<Group> groups_;
   std::vector<std::vector<Place>> places_;  // per control point, by group
 };

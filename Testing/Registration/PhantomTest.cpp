@@ -21,8 +21,8 @@ using ::testing::ThrowsMessage;
 
 bool same_bytes(const auto& a, const auto& b) {
   return a.values().size() == b.values().size() &&
-         std::memcmp(a.values().data(), b.values().data(),
-                     a.values().size() * sizeof(a.values()[0])) == 0;
+         (a.values().empty() || std::memcmp(a.values().data(), b.values().data(),
+                                            a.values().size() * sizeof(a.values()[0])) == 0);
 }
 
 bool same_bytes(const Phantom& a, const Phantom& b) {

@@ -29,7 +29,7 @@ int bytes_per_value(PixelType type);
 /// Calls f(T()) with the type that is meant.
 template <typename Function>
 decltype(auto) with_pixel_type(PixelType type, Function&& f) {
-  switch (type) {
+  switch (type) {  // NOLINT(bugprone-branch-clone): branches differ in the type
     case PixelType::kUint8:
       return f(std::uint8_t());
     case PixelType::kInt8:

@@ -46,7 +46,7 @@ void add_outlines(Phantom& phantom, const RigidPhantomPlan& plan) {
     line.points =
         plan.bodies[k].shape.outline(plan.outline_chords, std::numeric_limits<double>::infinity());
     line.closed = true;
-    line.body = BodySide::left;
+    line.body = BodySide::kLeft;
     line.left_label = static_cast<int>(k) + 1;
     line.name = message("body ", k + 1);
     phantom.feature_lines.push_back(std::move(line));

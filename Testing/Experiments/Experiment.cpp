@@ -72,7 +72,7 @@ std::shared_ptr<const SplineBasis<2>> structured_basis(const Phantom& phantom, i
                                                        bool creases) {
   const auto mesh = structured_triangulation(phantom.fixed.raster().bounds(), cells, cells);
   auto outlines = phantom.feature_lines;
-  for (auto& line : outlines) line.corner = CornerRule::collapse;  // the bodies' corners are sharp
+  for (auto& line : outlines) line.corner = CornerRule::kCollapse;  // the bodies' corners are sharp
   const DomainMesh domain = attach_feature_lines(mesh, outlines);
   const PlacedKnots knots = place_knots(domain, {.creases = creases, .structured = true});
   return std::make_shared<TriangularBSplineBasis<2>>(knots.net);

@@ -106,8 +106,8 @@ inline Eigen::MatrixXd dense_symmetric(const Eigen::SparseMatrix<double>& lower)
 /// Convex and not quadratic: 1/2 x^T A x - b^T x + sum_i w log cosh(x_i).
 class ConvexFunction final : public ObjectiveFunction {
  public:
-  ConvexFunction(Eigen::SparseMatrix<double> A, Eigen::VectorXd b, double w)
-      : A_(std::move(A)), b_(std::move(b)), w_(w) {}
+  ConvexFunction(const Eigen::SparseMatrix<double>& A, Eigen::VectorXd b, double w)
+      : A_(A), b_(std::move(b)), w_(w) {}
   Eigen::Index size() const override { return b_.size(); }
   double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
                   Eigen::SparseMatrix<double>* hessian) override {

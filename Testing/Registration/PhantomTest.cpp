@@ -187,7 +187,7 @@ TEST_P(RigidPhantoms, OutlinesRunCounterClockwiseRoundTheirLabels) {
   for (std::size_t k = 0; k < phantom.feature_lines.size(); ++k) {
     const auto& line = phantom.feature_lines[k];
     EXPECT_TRUE(line.closed);
-    EXPECT_EQ(line.body, BodySide::left);
+    EXPECT_EQ(line.body, BodySide::kLeft);
     EXPECT_GT(signed_area(line.points), 0);
     const auto pixels = std::count(phantom.labels.values().begin(), phantom.labels.values().end(),
                                    static_cast<int>(k) + 1);

@@ -132,7 +132,7 @@ TEST_P(CreaseConstruction, BendingHasTheAffineKernel) {
 
 // A line that goes straight on bends exactly along its edges and needs no band.
 TEST(StraightCrease, IsExact) {
-  for (const auto body : {BodySide::none, BodySide::left}) {
+  for (const auto body : {BodySide::kNone, BodySide::kLeft}) {
     for (int degree = 2; degree <= 4; ++degree) {
       const auto placed =
           place_knots(testing::domain_with({testing::open_line({{-2.2, -0.7}, {2.2, 0.4}}, body)}),

@@ -198,7 +198,7 @@ TEST(CreaseFit, HasNoHingesOnAnyShape) {
     const char* name;
     DomainMesh mesh;
     Truth truth;
-  } cases[] = {{"disc without body", testing::disc_domain(16, BodySide::none), kDisc},
+  } cases[] = {{"disc without body", testing::disc_domain(16, BodySide::kNone), kDisc},
                {"rounded rectangle", near_lines({testing::closed_line(outline)}),
                 fading([=](const Point<2>& x) { return box.distance(x); })},
                {"wavy line", near_lines({testing::wavy_line()}),
@@ -213,7 +213,7 @@ TEST(CreaseFit, HasNoHingesOnAnyShape) {
 }
 
 TEST(CreaseFit, IsAsWellConditionedAsWithoutCreases) {
-  for (const auto body : {BodySide::automatic, BodySide::none}) {
+  for (const auto body : {BodySide::kAutomatic, BodySide::kNone}) {
     const auto mesh = testing::disc_domain(16, body);
     const double creased = Fit(place_knots(mesh).net, kDisc).condition();
     const double smooth = Fit(place_knots(mesh, {.creases = false}).net, kDisc).condition();
@@ -222,7 +222,7 @@ TEST(CreaseFit, IsAsWellConditionedAsWithoutCreases) {
 }
 
 TEST(CreaseFit, ReversedLinesGiveTheSame) {
-  for (const auto body : {BodySide::left, BodySide::right, BodySide::none}) {
+  for (const auto body : {BodySide::kLeft, BodySide::kRight, BodySide::kNone}) {
     const auto line = testing::closed_line(testing::regular_polygon({0, 0}, 1, 12), body);
     const auto net = [](const FeatureLine& l) {
       return place_knots(testing::domain_with({l})).net;

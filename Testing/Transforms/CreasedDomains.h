@@ -21,7 +21,7 @@ inline DomainMesh domain_with(const std::vector<FeatureLine>& lines, double edge
 }
 
 /// A disc of radius 1, its outline a regular polygon; 16 corners give edges of 0.39.
-inline DomainMesh disc_domain(int corners, BodySide body = BodySide::automatic) {
+inline DomainMesh disc_domain(int corners, BodySide body = BodySide::kAutomatic) {
   return domain_with({closed_line(regular_polygon({0, 0}, 1, corners), body)}, 0.5,
                      2 * std::sin(std::numbers::pi / corners));
 }
@@ -77,12 +77,12 @@ inline std::vector<CreasedDomain> creased_domains() {
   }
   const Polyline box = {{-1.1, -0.8}, {0.9, -0.9}, {1.0, 0.9}, {-0.9, 0.8}};
   auto sharp_box = closed_line(box);
-  sharp_box.corner = CornerRule::collapse;
+  sharp_box.corner = CornerRule::kCollapse;
   const auto across = open_line(
       curve(-1.6, 1.6, 60, [](double y) { return Point<2>(0.3 * std::cos(1.3 * y), y); }));
   return {{"disc", domain_with({closed_line(disc)})},
-          {"disc without body", domain_with({closed_line(disc, BodySide::none)})},
-          {"body outside", domain_with({closed_line(disc, BodySide::right)})},
+          {"disc without body", domain_with({closed_line(disc, BodySide::kNone)})},
+          {"body outside", domain_with({closed_line(disc, BodySide::kRight)})},
           {"bean", domain_with({closed_line(bean)})},
           {"blunt box", domain_with({closed_line(box)})},
           {"sharp box", domain_with({sharp_box})},

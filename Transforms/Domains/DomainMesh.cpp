@@ -122,7 +122,7 @@ DomainMesh attach_feature_lines(SimplexMesh<2> mesh, const std::vector<FeatureLi
   DomainMesh domain;
   for (std::size_t l = 0; l < labelled.size(); ++l) {
     const FeatureLine line =
-        body_side(labelled[l]) == BodySide::right ? reversed(labelled[l]) : labelled[l];
+        body_side(labelled[l]) == BodySide::kRight ? reversed(labelled[l]) : labelled[l];
     FeatureChain chain;
     chain.vertices = walk(walker, line, l);
     chain.closed = line.closed;

@@ -13,9 +13,9 @@ namespace crease {
 struct FeatureChain {
   std::vector<int> vertices;  ///< in order; the first is not repeated in a closed chain
   bool closed = false;
-  FeatureKind kind = FeatureKind::crease;
-  BodySide body = BodySide::none;  ///< left or none: chains run with their body on the left
-  CornerRule corner = CornerRule::blunt;
+  FeatureKind kind = FeatureKind::kCrease;
+  BodySide body = BodySide::kNone;  ///< left or none: chains run with their body on the left
+  CornerRule corner = CornerRule::kBlunt;
   std::string name;
 
   int num_edges() const { return static_cast<int>(vertices.size()) - (closed ? 0 : 1); }

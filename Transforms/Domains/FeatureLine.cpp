@@ -16,29 +16,29 @@ std::string describe(const FeatureLine& line, std::size_t number) {
 }  // namespace
 
 std::string to_string(FeatureKind kind) {
-  return kind == FeatureKind::crease ? "crease" : kind == FeatureKind::slide ? "slide" : "slit";
+  return kind == FeatureKind::kCrease ? "crease" : kind == FeatureKind::kSlide ? "slide" : "slit";
 }
 
 std::string to_string(BodySide side) {
   switch (side) {
-    case BodySide::left:
+    case BodySide::kLeft:
       return "left";
-    case BodySide::right:
+    case BodySide::kRight:
       return "right";
-    case BodySide::none:
+    case BodySide::kNone:
       return "none";
-    case BodySide::automatic:
+    case BodySide::kAutomatic:
       break;
   }
   return "automatic";
 }
 
-std::string to_string(CornerRule rule) { return rule == CornerRule::blunt ? "blunt" : "collapse"; }
+std::string to_string(CornerRule rule) { return rule == CornerRule::kBlunt ? "blunt" : "collapse"; }
 
 BodySide body_side(const FeatureLine& line) {
-  if (line.body != BodySide::automatic) return line.body;
-  if (!line.closed) return BodySide::none;
-  return signed_area(line.points) >= 0 ? BodySide::left : BodySide::right;
+  if (line.body != BodySide::kAutomatic) return line.body;
+  if (!line.closed) return BodySide::kNone;
+  return signed_area(line.points) >= 0 ? BodySide::kLeft : BodySide::kRight;
 }
 
 FeatureLine reversed(const FeatureLine& line) {
@@ -50,8 +50,8 @@ FeatureLine reversed(const FeatureLine& line) {
     std::rotate(result.edge_kinds.begin(), result.edge_kinds.begin() + 1, result.edge_kinds.end());
   }
   std::swap(result.left_label, result.right_label);
-  if (line.body == BodySide::left) result.body = BodySide::right;
-  if (line.body == BodySide::right) result.body = BodySide::left;
+  if (line.body == BodySide::kLeft) result.body = BodySide::kRight;
+  if (line.body == BodySide::kRight) result.body = BodySide::kLeft;
   return result;
 }
 
@@ -87,7 +87,7 @@ void check_kinds_available(const std::vector<FeatureLine>& lines) {
   for (std::size_t l = 0; l < lines.size(); ++l) {
     for (int e = 0; e < lines[l].num_edges(); ++e) {
       const FeatureKind kind = lines[l].edge_kind(e);
-      if (kind == FeatureKind::crease) continue;
+      if (kind == FeatureKind::kCrease) continue;
       throw InvalidInput(message(describe(lines[l], l), ": ", to_string(kind),
                                  " lines are not available yet in this version; use crease."));
     }
@@ -100,8 +100,8 @@ std::vector<FeatureLine> with_body_labels(std::vector<FeatureLine> lines) {
   for (auto& line : lines) {
     const BodySide side = body_side(line);
     if (!line.closed || line.left_label > 0 || line.right_label > 0) continue;
-    if (side == BodySide::left) line.left_label = next++;
-    if (side == BodySide::right) line.right_label = next++;
+    if (side == BodySide::kLeft) line.left_label = next++;
+    if (side == BodySide::kRight) line.right_label = next++;
   }
   return lines;
 }

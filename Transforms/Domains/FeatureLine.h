@@ -8,22 +8,22 @@
 namespace crease {
 
 /// What a map may do across a feature line: bend sharply, slide along it, or tear.
-enum class FeatureKind { crease, slide, slit };
-/// On which side of a line, walked along its points, a rigid body lies. `automatic`: inside a closed
+enum class FeatureKind { kCrease, kSlide, kSlit };
+/// On which side of a line, walked along its points, a rigid body lies. `kAutomatic`: inside a closed
 /// line, nowhere beside an open one.
-enum class BodySide { automatic, left, right, none };
+enum class BodySide { kAutomatic, kLeft, kRight, kNone };
 /// What happens where a line turns by more than 60 degrees: rounded over a quarter of an edge, or
 /// sharp, with hinges along the mesh edges that meet there.
-enum class CornerRule { blunt, collapse };
+enum class CornerRule { kBlunt, kCollapse };
 
 /// An open or closed polyline in the domain along which a map is less smooth than elsewhere.
 struct FeatureLine {
   Polyline points;      ///< mm, in order; the first is not repeated in a closed line
   bool closed = false;  ///< an edge runs from the last point to the first
-  FeatureKind kind = FeatureKind::crease;
+  FeatureKind kind = FeatureKind::kCrease;
   std::vector<FeatureKind> edge_kinds;  ///< per edge, when the kind changes along the line
-  BodySide body = BodySide::automatic;
-  CornerRule corner = CornerRule::blunt;
+  BodySide body = BodySide::kAutomatic;
+  CornerRule corner = CornerRule::kBlunt;
   std::string name;     ///< for messages
   int left_label = 0;   ///< number of the rigid body on the left; 0: none, or not numbered yet
   int right_label = 0;  ///< the same on the right

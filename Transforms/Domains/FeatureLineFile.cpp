@@ -36,12 +36,12 @@ struct RowsOfLine {
 
 void add_row(const CsvTable& table, int row, RowsOfLine& rows) {
   rows.line.points.emplace_back(table.number(row, "x"), table.number(row, "y"));
-  rows.kinds.push_back(parse_word(table, row, "kind", FeatureKind::crease,
-                                  {FeatureKind::crease, FeatureKind::slide, FeatureKind::slit}));
-  const BodySide body = parse_word(table, row, "body", BodySide::automatic,
-                                   {BodySide::left, BodySide::right, BodySide::none});
-  const CornerRule corner = parse_word(table, row, "corner", CornerRule::blunt,
-                                       {CornerRule::blunt, CornerRule::collapse});
+  rows.kinds.push_back(parse_word(table, row, "kind", FeatureKind::kCrease,
+                                  {FeatureKind::kCrease, FeatureKind::kSlide, FeatureKind::kSlit}));
+  const BodySide body = parse_word(table, row, "body", BodySide::kAutomatic,
+                                   {BodySide::kLeft, BodySide::kRight, BodySide::kNone});
+  const CornerRule corner = parse_word(table, row, "corner", CornerRule::kBlunt,
+                                       {CornerRule::kBlunt, CornerRule::kCollapse});
   if (rows.line.points.size() == 1) {
     rows.line.body = body;
     rows.line.corner = corner;

@@ -185,7 +185,7 @@ LabelOutlines label_outlines(const Raster<2>& raster, std::span<const std::int32
     line.closed = arc.closed;
     line.left_label = arc.left;
     line.right_label = arc.right;
-    line.body = arc.right == 0 ? BodySide::left : BodySide::none;
+    line.body = arc.right == 0 ? BodySide::kLeft : BodySide::kNone;
     line.name = name_of(arc);
     result.lines.push_back(std::move(line));
   }

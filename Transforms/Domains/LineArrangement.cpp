@@ -318,7 +318,7 @@ LineArrangement Arranger::result() {
     for (int e = 0; e < chain.num_edges(); ++e) {
       const int a = chain.vertices[e], b = chain.vertices[chain.next(e)];
       if (a == b) continue;
-      const bool has_body = chain.line >= 0 && lines_[chain.line].body == BodySide::left;
+      const bool has_body = chain.line >= 0 && lines_[chain.line].body == BodySide::kLeft;
       const auto [it, is_new] =
           known.try_emplace(std::minmax(a, b), static_cast<int>(result.edges.size()));
       if (!is_new) {

@@ -300,7 +300,7 @@ void DomainMesher::set_chains(const LineArrangement& arrangement,
       chain.kind = line.kind;
       chain.corner = line.corner;
       chain.name = line.name;
-      chain.body = edge.body_left && !edge.body_right ? BodySide::left : BodySide::none;
+      chain.body = edge.body_left && !edge.body_right ? BodySide::kLeft : BodySide::kNone;
       domain.chains.push_back(std::move(chain));
     }
     auto& vertices = domain.chains.back().vertices;

@@ -20,8 +20,8 @@ std::string describe(const FeatureLine& line) {
 /// The same line in a direction, and a closed one with a start, that do not depend on how it was given.
 FeatureLine canonical(FeatureLine line) {
   line.body = body_side(line);
-  const bool backwards = line.body == BodySide::right ||
-                         (line.body == BodySide::none &&
+  const bool backwards = line.body == BodySide::kRight ||
+                         (line.body == BodySide::kNone &&
                           (line.closed ? signed_area(line.points) < 0
                                        : before(line.points.back(), line.points.front())));
   if (backwards) line = reversed(line);

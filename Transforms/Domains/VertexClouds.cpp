@@ -46,13 +46,13 @@ std::vector<LineEdge> line_edges(const DomainMesh& domain, const MeshTopology& t
                                    b, ", which are no edge of the mesh."));
       }
       LineEdge& line = result[edge];
-      if (chain.body == BodySide::none) {
+      if (chain.body == BodySide::kNone) {
         line.body_left = line.body_right = true;
       } else {
-        ((chain.body == BodySide::left) == (a < b) ? line.body_left : line.body_right) = true;
+        ((chain.body == BodySide::kLeft) == (a < b) ? line.body_left : line.body_right) = true;
       }
       line.is_line = true;
-      if (chain.corner == CornerRule::collapse) line.corner = CornerRule::collapse;
+      if (chain.corner == CornerRule::kCollapse) line.corner = CornerRule::kCollapse;
     }
   }
   return result;
@@ -195,9 +195,9 @@ VertexClouds::Passage VertexClouds::passage(int vertex, int first_edge, int seco
   passage.in = in.normalized();
   passage.out = out.normalized();
   passage.shorter_edge = std::min(in.norm(), out.norm());
-  if (lines_[before].corner == CornerRule::collapse ||
-      lines_[after].corner == CornerRule::collapse) {
-    passage.corner = CornerRule::collapse;
+  if (lines_[before].corner == CornerRule::kCollapse ||
+      lines_[after].corner == CornerRule::kCollapse) {
+    passage.corner = CornerRule::kCollapse;
   }
   // Without a body no direction is better than the other: take one that depends on the place alone.
   if (!passage.body && (passage.in + passage.out).dot(Vector<2>(0.8, 0.6)) < 0) {
@@ -213,7 +213,7 @@ void VertexClouds::set_passage(int vertex, const Passage& passage, CloudSketch& 
   const bool is_corner = std::abs(turn) > kCorner;
   sketch.plan.turn_deg = std::abs(turn) / kDegree;
   sketch.plan.chord_offset = passage.shorter_edge * std::abs(turn) / 8;
-  if (is_corner && passage.corner == CornerRule::collapse) {
+  if (is_corner && passage.corner == CornerRule::kCollapse) {
     return collapse(sketch, VertexRule::collapsed);
   }
   const double factor = is_corner      ? options_.fan_corner

@@ -20,7 +20,7 @@ struct CloudSketch {
 struct LineEdge {
   bool is_line = false;
   bool body_left = false, body_right = false;  ///< walking from the lower to the higher vertex
-  CornerRule corner = CornerRule::blunt;
+  CornerRule corner = CornerRule::kBlunt;
 
   bool one_body() const { return body_left != body_right; }
 };
@@ -47,7 +47,7 @@ class VertexClouds {
     Vector<2> in, out;
     double shorter_edge = 0;
     bool body = false;
-    CornerRule corner = CornerRule::blunt;
+    CornerRule corner = CornerRule::kBlunt;
   };
 
   double smallest_inradius(int vertex) const;

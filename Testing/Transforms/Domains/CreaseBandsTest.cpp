@@ -54,7 +54,7 @@ TEST(CreaseBands, StraightLinesHaveEmptyBands) {
 }
 
 TEST(CreaseBands, HullsOfBothCloudsOnTheOuterSide) {
-  const auto placed = place_knots(bent_line(0.2, BodySide::right));  // body below
+  const auto placed = place_knots(bent_line(0.2, BodySide::kRight));  // body below
   const CreaseBands bands(placed.net);
   int checked = 0;
   for (const auto& band : bands.bands()) {
@@ -100,7 +100,7 @@ TEST(CreaseBands, BodyRuleKeepsBandsOutOfTheBody) {
 TEST(CreaseBands, WithoutABodyBandsLieOnBothSides) {
   const auto domain =
       mesh_domain(testing::rectangle(0, 0, 40, 40),
-                  {closed_line(testing::regular_polygon({20, 20}, 10, 16), BodySide::none)},
+                  {closed_line(testing::regular_polygon({20, 20}, 10, 16), BodySide::kNone)},
                   {.edge_length = 8, .edge_length_near_lines = 4});
   const auto placed = place_knots(domain);
   const CreaseBands bands(placed.net);

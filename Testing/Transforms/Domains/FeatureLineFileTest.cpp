@@ -32,11 +32,11 @@ TEST(FeatureLineFile, ReadsOpenAndClosedLines) {
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_TRUE(lines[0].closed);
   EXPECT_EQ(lines[0].points.size(), 3U);
-  EXPECT_EQ(body_side(lines[0]), BodySide::left);
+  EXPECT_EQ(body_side(lines[0]), BodySide::kLeft);
   EXPECT_FALSE(lines[1].closed);
   EXPECT_EQ(lines[1].name, "B, second");
   EXPECT_EQ(lines[1].points[1], Point<2>(6, 5.5));
-  EXPECT_EQ(lines[1].kind, FeatureKind::crease);
+  EXPECT_EQ(lines[1].kind, FeatureKind::kCrease);
 }
 
 TEST(FeatureLineFile, ReadsKindBodyAndCorner) {
@@ -44,12 +44,12 @@ TEST(FeatureLineFile, ReadsKindBodyAndCorner) {
       "all.csv",
       "line,x,y,kind,body,corner\n1,0,0,slide,right,collapse\n1,1,0,slit,right,collapse\n"
       "1,2,0,slit,right,collapse\n2,0,1,,,\n2,1,1,,,\n"));
-  EXPECT_EQ(lines[0].kind, FeatureKind::slide);
-  EXPECT_EQ(lines[0].edge_kind(1), FeatureKind::slit);
-  EXPECT_EQ(lines[0].body, BodySide::right);
-  EXPECT_EQ(lines[0].corner, CornerRule::collapse);
-  EXPECT_EQ(lines[1].kind, FeatureKind::crease);
-  EXPECT_EQ(lines[1].corner, CornerRule::blunt);
+  EXPECT_EQ(lines[0].kind, FeatureKind::kSlide);
+  EXPECT_EQ(lines[0].edge_kind(1), FeatureKind::kSlit);
+  EXPECT_EQ(lines[0].body, BodySide::kRight);
+  EXPECT_EQ(lines[0].corner, CornerRule::kCollapse);
+  EXPECT_EQ(lines[1].kind, FeatureKind::kCrease);
+  EXPECT_EQ(lines[1].corner, CornerRule::kBlunt);
 }
 
 TEST(FeatureLineFile, ErrorsNameFileRowAndColumn) {
@@ -75,20 +75,20 @@ TEST(FeatureLineFile, ErrorsNameFileRowAndColumn) {
 
 TEST(FeatureLineFile, WritingAndReadingGivesTheSameLines) {
   FeatureLine closed = testing::closed_line(testing::regular_polygon({1.0 / 3, 2}, 0.7, 5));
-  FeatureLine open = testing::open_line({{0, 0}, {0.1, 1e-17}, {1e10, 3}}, BodySide::right);
-  open.corner = CornerRule::collapse;
-  open.edge_kinds = {FeatureKind::crease, FeatureKind::slit};
+  FeatureLine open = testing::open_line({{0, 0}, {0.1, 1e-17}, {1e10, 3}}, BodySide::kRight);
+  open.corner = CornerRule::kCollapse;
+  open.edge_kinds = {FeatureKind::kCrease, FeatureKind::kSlit};
   const auto path = write_file("round.csv", "");
   write_feature_lines(path, {closed, open});
   const auto read = read_feature_lines(path);
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].points, closed.points);
   EXPECT_TRUE(read[0].closed);
-  EXPECT_EQ(body_side(read[0]), BodySide::left);
+  EXPECT_EQ(body_side(read[0]), BodySide::kLeft);
   EXPECT_EQ(read[1].points, open.points);
-  EXPECT_EQ(read[1].body, BodySide::right);
-  EXPECT_EQ(read[1].corner, CornerRule::collapse);
-  EXPECT_EQ(read[1].edge_kind(1), FeatureKind::slit);
+  EXPECT_EQ(read[1].body, BodySide::kRight);
+  EXPECT_EQ(read[1].corner, CornerRule::kCollapse);
+  EXPECT_EQ(read[1].edge_kind(1), FeatureKind::kSlit);
   EXPECT_THROW(write_feature_lines("/no/such/folder/lines.csv", {open}), FileError);
 }
 

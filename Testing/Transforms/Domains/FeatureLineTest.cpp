@@ -23,27 +23,27 @@ const Polyline kInner = {{4, 4}, {6, 4}, {6, 6}, {4, 6}};
 }  // namespace
 
 TEST(FeatureLine, BodyOfAClosedLineIsInsideUnlessToldOtherwise) {
-  EXPECT_EQ(body_side(closed_line(kSquare)), BodySide::left);
-  EXPECT_EQ(body_side(closed_line({kSquare.rbegin(), kSquare.rend()})), BodySide::right);
-  EXPECT_EQ(body_side(closed_line(kSquare, BodySide::right)), BodySide::right);
-  EXPECT_EQ(body_side(closed_line(kSquare, BodySide::none)), BodySide::none);
+  EXPECT_EQ(body_side(closed_line(kSquare)), BodySide::kLeft);
+  EXPECT_EQ(body_side(closed_line({kSquare.rbegin(), kSquare.rend()})), BodySide::kRight);
+  EXPECT_EQ(body_side(closed_line(kSquare, BodySide::kRight)), BodySide::kRight);
+  EXPECT_EQ(body_side(closed_line(kSquare, BodySide::kNone)), BodySide::kNone);
   FeatureLine open;
   open.points = kSquare;
-  EXPECT_EQ(body_side(open), BodySide::none);
+  EXPECT_EQ(body_side(open), BodySide::kNone);
 }
 
 TEST(FeatureLine, ReversingSwapsSidesAndKeepsKindsWithTheirEdges) {
-  FeatureLine line = closed_line(kSquare, BodySide::left);
+  FeatureLine line = closed_line(kSquare, BodySide::kLeft);
   line.left_label = 7;
-  line.edge_kinds = {FeatureKind::crease, FeatureKind::slide, FeatureKind::slit,
-                     FeatureKind::crease};
+  line.edge_kinds = {FeatureKind::kCrease, FeatureKind::kSlide, FeatureKind::kSlit,
+                     FeatureKind::kCrease};
   const FeatureLine back = reversed(line);
-  EXPECT_EQ(back.body, BodySide::right);
+  EXPECT_EQ(back.body, BodySide::kRight);
   EXPECT_EQ(back.right_label, 7);
   // The edge from (10,0) to (10,10) slides in both.
   for (int e = 0; e < 4; ++e) {
     const Point<2> middle = 0.5 * (back.points[e] + back.points[(e + 1) % 4]);
-    EXPECT_EQ(back.edge_kind(e) == FeatureKind::slide, middle == Point<2>(10, 5));
+    EXPECT_EQ(back.edge_kind(e) == FeatureKind::kSlide, middle == Point<2>(10, 5));
   }
 }
 
@@ -68,12 +68,12 @@ TEST(FeatureLine, BadLinesAreNamed) {
 
 TEST(FeatureLine, SlitAndSlideAreRefusedForNow) {
   FeatureLine line = open_line({{0, 0}, {1, 0}, {2, 0}});
-  line.kind = FeatureKind::slide;
+  line.kind = FeatureKind::kSlide;
   EXPECT_THAT([&] { check_kinds_available({line}); },
               ThrowsMessage<InvalidInput>(
                   AllOf(HasSubstr("slide lines are not available"), HasSubstr("use crease"))));
-  line.kind = FeatureKind::crease;
-  line.edge_kinds = {FeatureKind::crease, FeatureKind::slit};
+  line.kind = FeatureKind::kCrease;
+  line.edge_kinds = {FeatureKind::kCrease, FeatureKind::kSlit};
   EXPECT_THAT([&] { check_kinds_available({line}); },
               ThrowsMessage<InvalidInput>(HasSubstr("slit lines are not available")));
 }
@@ -82,7 +82,7 @@ TEST(FeatureLine, LabelsFillTheGaps) {
   FeatureLine labelled = closed_line(kSquare);
   labelled.left_label = 3;
   const auto lines = with_body_labels(
-      {labelled, closed_line(kInner), closed_line(kInner, BodySide::none),
+      {labelled, closed_line(kInner), closed_line(kInner, BodySide::kNone),
        closed_line({kInner.rbegin(), kInner.rend()}), open_line({{0, 0}, {1, 0}})});
   EXPECT_EQ(lines[0].left_label, 3);
   EXPECT_EQ(lines[1].left_label, 4);
@@ -92,7 +92,7 @@ TEST(FeatureLine, LabelsFillTheGaps) {
 }
 
 TEST(BodyRegions, HolesAndOutsidesFollowTheLabels) {
-  FeatureLine outer = closed_line(kSquare), hole = closed_line(kInner, BodySide::right);
+  FeatureLine outer = closed_line(kSquare), hole = closed_line(kInner, BodySide::kRight);
   outer.left_label = 2;
   hole.right_label = 2;
   const BodyRegions ring({outer, hole});
@@ -105,8 +105,8 @@ TEST(BodyRegions, HolesAndOutsidesFollowTheLabels) {
 }
 
 TEST(BodyRegions, ArcsOfTwoBodiesCloseEachOthersRings) {
-  FeatureLine left = open_line({{5, 10}, {0, 10}, {0, 0}, {5, 0}}, BodySide::left);
-  FeatureLine right = open_line({{5, 0}, {10, 0}, {10, 10}, {5, 10}}, BodySide::left);
+  FeatureLine left = open_line({{5, 10}, {0, 10}, {0, 0}, {5, 0}}, BodySide::kLeft);
+  FeatureLine right = open_line({{5, 0}, {10, 0}, {10, 10}, {5, 10}}, BodySide::kLeft);
   FeatureLine shared = open_line({{5, 0}, {5, 10}});
   left.left_label = 1;
   right.left_label = 2;

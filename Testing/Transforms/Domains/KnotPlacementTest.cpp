@@ -53,7 +53,7 @@ TEST(KnotPlacement, DegreesOneToFiveAreValid) {
 }
 
 TEST(KnotPlacement, ReversingALineWithItsBodySideChangesNothing) {
-  for (const auto body : {BodySide::left, BodySide::right, BodySide::none}) {
+  for (const auto body : {BodySide::kLeft, BodySide::kRight, BodySide::kNone}) {
     const auto forward = bent_line(0.25, body);
     Polyline points;
     for (int v : forward.chains[0].vertices) points.push_back(forward.mesh.vertices[v]);
@@ -68,7 +68,7 @@ TEST(KnotPlacement, ReversingALineWithItsBodySideChangesNothing) {
 }
 
 TEST(KnotPlacement, RenumberingVerticesChangesNothing) {
-  const auto domain = bent_line(0.25, BodySide::left);
+  const auto domain = bent_line(0.25, BodySide::kLeft);
   const int n = static_cast<int>(domain.mesh.vertices.size());
   const auto other = [&](int v) { return (7 * v + 3) % n; };  // 7 and 15 have no common divisor
   DomainMesh renumbered = domain;
@@ -149,7 +149,7 @@ TEST(KnotPlacement, RadiiAreHalvedUntilTheTrianglesAreValid) {
   mesh.vertices[12] = {2, 2.3};   // bends the line
   mesh.vertices[17] = {2, 2.42};  // a neighbour close above it
   const auto domain = attach_feature_lines(
-      mesh, {open_line({{0, 2}, {1, 2}, {2, 2.3}, {3, 2}, {4, 2}}, BodySide::right)});
+      mesh, {open_line({{0, 2}, {1, 2}, {2, 2.3}, {3, 2}, {4, 2}}, BodySide::kRight)});
   const auto placed = place_knots(domain);
   EXPECT_GT(placed.plan.num_halved, 0);
   EXPECT_LE(placed.plan.vertices[12].halvings, 4);
@@ -163,7 +163,7 @@ TEST(KnotPlacement, HopelessVerticesAreCollapsedWithAWarning) {
   mesh.vertices[12] = {2, 2.3};
   mesh.vertices[17] = {2, 2.301};
   const auto domain = attach_feature_lines(
-      mesh, {open_line({{0, 2}, {1, 2}, {2, 2.3}, {3, 2}, {4, 2}}, BodySide::right)});
+      mesh, {open_line({{0, 2}, {1, 2}, {2, 2.3}, {3, 2}, {4, 2}}, BodySide::kRight)});
   const auto placed = place_knots(domain);
   EXPECT_EQ(placed.plan.vertices[12].rule, VertexRule::collapsed);
   EXPECT_THAT(placed.plan.warnings, Contains(HasSubstr("(2, 2.3) mm were collapsed")));
@@ -190,7 +190,7 @@ TEST(KnotPlacement, WideBandsAreWarnedOf) {
 
 TEST(KnotPlacement, ThePlanIsPrinted) {
   std::ostringstream stream;
-  stream << place_knots(bent_line(0.2, BodySide::left)).plan;
+  stream << place_knots(bent_line(0.2, BodySide::kLeft)).plan;
   EXPECT_THAT(stream.str(), HasSubstr("fanned 3"));
   EXPECT_THAT(stream.str(), HasSubstr("border meeting 2"));
   EXPECT_THAT(stream.str(), HasSubstr("crease edges: 4"));

@@ -58,15 +58,15 @@ TEST(KnotRules, StraightLinesCarryTheirKnotsExactly) {
   const auto none = place_knots(bent_line(0));
   expect_knots(none, kMiddle, {{0.35, 0}, {-0.35, 0}});
   EXPECT_EQ(none.plan.vertices[kMiddle].rule, VertexRule::straight);
-  const auto body = place_knots(bent_line(0, BodySide::left));
+  const auto body = place_knots(bent_line(0, BodySide::kLeft));
   expect_knots(body, kMiddle, {{0.25, 0}, {-0.25, 0}});
-  const auto quintic = place_knots(bent_line(0, BodySide::left), {.degree = 5});
+  const auto quintic = place_knots(bent_line(0, BodySide::kLeft), {.degree = 5});
   expect_knots(quintic, kMiddle, {{0.25, 0}, {-0.25, 0}, {0.125, 0}, {-0.0625, 0}});
 }
 
 TEST(KnotRules, TurnsBelowADegreeCountAsStraight) {
   const double height = std::tan(0.49 * std::numbers::pi / 360);
-  const auto placed = place_knots(bent_line(height, BodySide::left));
+  const auto placed = place_knots(bent_line(height, BodySide::kLeft));
   EXPECT_EQ(placed.plan.vertices[kMiddle].rule, VertexRule::straight);
   EXPECT_NEAR(placed.net.clouds[kMiddle][1].y(), placed.net.clouds[kMiddle][0].y(), kExact);
   EXPECT_NEAR(placed.plan.vertices[kMiddle].turn_deg, 0.49, 1e-9);
@@ -74,7 +74,7 @@ TEST(KnotRules, TurnsBelowADegreeCountAsStraight) {
 
 TEST(KnotRules, ConvexFanProlongsBothEdgesAwayFromTheBody) {
   // The body lies below the line, which rises to the middle: convex there.
-  const auto placed = place_knots(bent_line(0.2, BodySide::right));
+  const auto placed = place_knots(bent_line(0.2, BodySide::kRight));
   EXPECT_EQ(placed.plan.vertices[kMiddle].rule, VertexRule::fanned);
   expect_knots(placed, kMiddle, {0.25 * Vector<2>(-1, 0.2), 0.25 * Vector<2>(1, 0.2)});
   EXPECT_NEAR(placed.plan.vertices[kMiddle].radius, 0.25 * std::hypot(1, 0.2), kExact);
@@ -82,7 +82,7 @@ TEST(KnotRules, ConvexFanProlongsBothEdgesAwayFromTheBody) {
 }
 
 TEST(KnotRules, ConcaveFanStaysOnTheEdges) {
-  const auto placed = place_knots(bent_line(0.2, BodySide::left));
+  const auto placed = place_knots(bent_line(0.2, BodySide::kLeft));
   EXPECT_EQ(placed.plan.vertices[kMiddle].rule, VertexRule::fanned);
   expect_knots(placed, kMiddle, {0.25 * Vector<2>(1, -0.2), 0.25 * Vector<2>(-1, -0.2)});
 }
@@ -95,7 +95,7 @@ TEST(KnotRules, WithoutABodyTheTangentCarriesTheKnots) {
 }
 
 TEST(KnotRules, CornersAreBluntWithASmallerFanOrCollapsed) {
-  FeatureLine line = open_line({{1, 2}, {2, 2}, {2, 1}}, BodySide::right);
+  FeatureLine line = open_line({{1, 2}, {2, 2}, {2, 1}}, BodySide::kRight);
   const auto blunt = place_knots(square(4, {line}, Diagonals::falling));
   const int v = vertex_at(blunt.net.mesh, {2, 2});
   EXPECT_EQ(blunt.plan.vertices[v].rule, VertexRule::corner);
@@ -107,7 +107,7 @@ TEST(KnotRules, CornersAreBluntWithASmallerFanOrCollapsed) {
   EXPECT_NEAR(r, 0.2, kExact);
   EXPECT_LT((cloud[1] - Point<2>(2, 2 + r)).norm(), kExact);
   EXPECT_LT((cloud[2] - Point<2>(2 + r, 2)).norm(), kExact);
-  line.corner = CornerRule::collapse;
+  line.corner = CornerRule::kCollapse;
   const auto sharp = place_knots(square(4, {line}, Diagonals::falling));
   EXPECT_EQ(sharp.plan.vertices[v].rule, VertexRule::collapsed);
   expect_knots(sharp, v, {{0, 0}, {0, 0}});
@@ -136,7 +136,7 @@ TEST(KnotRules, JunctionRadiusDoesNotFollowAlpha) {
 }
 
 TEST(KnotRules, LinesThatMeetTheBorderAreProlongedOutside) {
-  const auto placed = place_knots(bent_line(0, BodySide::left));
+  const auto placed = place_knots(bent_line(0, BodySide::kLeft));
   const double r = 0.5 * kUnitInradius;
   EXPECT_EQ(placed.plan.vertices[5].rule, VertexRule::border_meeting);
   expect_knots(placed, 5, {{-r, 0}, {-0.75 * r, 0}});
@@ -182,7 +182,7 @@ TEST(KnotRules, CollapsedBorder) {
 }
 
 TEST(KnotRules, LessSmoothnessRepeatsTheLastDistinctKnot) {
-  const auto domain = bent_line(0.2, BodySide::left);
+  const auto domain = bent_line(0.2, BodySide::kLeft);
   const auto cubic = place_knots(domain, {.degree = 3, .smoothness = 1});
   for (const auto& cloud : cubic.net.clouds) EXPECT_EQ(cloud[1], cloud[2]);
   const auto quartic = place_knots(domain, {.degree = 4, .smoothness = 2});

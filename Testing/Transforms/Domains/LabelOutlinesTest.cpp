@@ -50,7 +50,7 @@ TEST(LabelOutlines, DiscsAreFoundToAThirdOfAPixelWithTheirArea) {
     ASSERT_EQ(outlines.lines.size(), 1U);
     const FeatureLine& line = outlines.lines[0];
     EXPECT_TRUE(line.closed);
-    EXPECT_EQ(line.body, BodySide::left);
+    EXPECT_EQ(line.body, BodySide::kLeft);
     EXPECT_EQ(line.left_label, 1);
     EXPECT_LT(largest_error(line, disc), 0.3) << "radius " << disc.radius;
     const auto pixels = static_cast<double>(std::count(labels.begin(), labels.end(), 1));
@@ -93,7 +93,7 @@ TEST(LabelOutlines, HolesRunClockwiseWithTheBodyOnTheLeft) {
   double sum = 0;
   for (const auto& line : outlines.lines) {
     EXPECT_EQ(line.left_label, 4);
-    EXPECT_EQ(line.body, BodySide::left);
+    EXPECT_EQ(line.body, BodySide::kLeft);
     sum += signed_area(line.points);
   }
   EXPECT_NEAR(sum, std::count(labels.begin(), labels.end(), 4), 0.01 * sum);
@@ -117,9 +117,9 @@ TEST(LabelOutlines, TouchingBodiesShareOneLine) {
     EXPECT_FALSE(line.closed);
     if (line.left_label > 0 && line.right_label > 0) {
       ++shared;
-      EXPECT_EQ(line.body, BodySide::none);
+      EXPECT_EQ(line.body, BodySide::kNone);
     } else {
-      EXPECT_EQ(line.body, BodySide::left);
+      EXPECT_EQ(line.body, BodySide::kLeft);
     }
   }
   EXPECT_EQ(shared, 1);
@@ -152,7 +152,7 @@ TEST(LabelOutlines, BodiesAtTheImageBorderGoOnOutsideAndAreCutByTheMesher) {
         label_outlines(raster, testing::label_image<Disc>(raster, {Disc{centre, 20}}));
     ASSERT_EQ(outlines.lines.size(), 1U);
     EXPECT_TRUE(outlines.lines[0].closed);
-    EXPECT_EQ(outlines.lines[0].body, BodySide::left);
+    EXPECT_EQ(outlines.lines[0].body, BodySide::kLeft);
     const auto domain = mesh_domain(rectangle_of(raster), outlines.lines,
                                     {.edge_length = 12, .edge_length_near_lines = 5});
     EXPECT_NEAR(testing::region_area(domain.mesh, 1), inside, 0.02 * inside);

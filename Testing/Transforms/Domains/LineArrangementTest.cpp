@@ -83,7 +83,7 @@ TEST(LineArrangement, ClosedLineOverTheBorderBecomesOpenAndKeepsItsRegion) {
   const auto domain = mesh_domain(rectangle(0, 0, 100, 100), {body}, kOptions);
   ASSERT_EQ(domain.chains.size(), 1U);
   EXPECT_FALSE(domain.chains[0].closed);
-  EXPECT_EQ(domain.chains[0].body, BodySide::left);
+  EXPECT_EQ(domain.chains[0].body, BodySide::kLeft);
   double inside = 0;  // the part of the polygon with x > 0, by its trapezoids
   for (std::size_t i = 0; i < body.points.size(); ++i) {
     const Point<2> a = body.points[i].cwiseMax(Point<2>(0, -1e9));
@@ -121,7 +121,7 @@ TEST(LineArrangement, NeighboursThatShareAStretchHaveNoBodySideThere) {
   EXPECT_NEAR(testing::region_area(domain.mesh, 2), 1500, 1e-9);
   double without_side = 0;
   for (const auto& chain : domain.chains) {
-    if (chain.body != BodySide::none) continue;
+    if (chain.body != BodySide::kNone) continue;
     Polyline points;
     for (int v : chain.vertices) points.push_back(domain.mesh.vertices[v]);
     without_side += polyline_length(points, false);
@@ -156,8 +156,8 @@ TEST(LineArrangement, SharpMeetingsAreReported) {
 }
 
 TEST(LineArrangement, TouchingLabelOutlinesMeetInJunctions) {
-  FeatureLine a = open_line({{50, 80}, {20, 50}, {50, 20}}, BodySide::left);
-  FeatureLine b = open_line({{50, 20}, {80, 50}, {50, 80}}, BodySide::left);
+  FeatureLine a = open_line({{50, 80}, {20, 50}, {50, 20}}, BodySide::kLeft);
+  FeatureLine b = open_line({{50, 20}, {80, 50}, {50, 80}}, BodySide::kLeft);
   FeatureLine shared = open_line({{50, 20}, {50, 80}});
   a.left_label = shared.left_label = 1;
   b.left_label = shared.right_label = 2;

@@ -73,7 +73,7 @@ TEST(Mesher, BodiesBecomeRegionsWithTheAreaOfTheirPolygons) {
   ASSERT_EQ(domain.chains.size(), 2U);
   for (const auto& chain : domain.chains) {
     EXPECT_TRUE(chain.closed);
-    EXPECT_EQ(chain.body, BodySide::left);
+    EXPECT_EQ(chain.body, BodySide::kLeft);
   }
   expect_chains_on_edges(domain);
   EXPECT_GT(mesh_figures(domain.mesh).smallest_angle_deg, 20.7);
@@ -175,9 +175,9 @@ TEST(Mesher, SameBytesWhateverTheHeapHolds) {
 }
 
 TEST(Mesher, OrderDirectionAndStartOfLinesDoNotMatter) {
-  const FeatureLine a = closed_line(testing::regular_polygon({30, 50}, 15, 16), BodySide::left);
-  const FeatureLine b = open_line({{60, 20}, {70, 50}, {65, 80}}, BodySide::left);
-  FeatureLine c = closed_line(testing::regular_polygon({80, 80}, 9, 10), BodySide::none);
+  const FeatureLine a = closed_line(testing::regular_polygon({30, 50}, 15, 16), BodySide::kLeft);
+  const FeatureLine b = open_line({{60, 20}, {70, 50}, {65, 80}}, BodySide::kLeft);
+  FeatureLine c = closed_line(testing::regular_polygon({80, 80}, 9, 10), BodySide::kNone);
   const auto first = mesh_domain(rectangle(0, 0, 100, 100), {a, b, c});
   FeatureLine turned = reversed(a);
   std::rotate(turned.points.begin(), turned.points.begin() + 5, turned.points.end());
@@ -212,7 +212,7 @@ TEST(Mesher, BadOptionsAreNamed) {
   EXPECT_THROW(mesh_domain(region, {}, {.gradation = 0}), InvalidInput);
   EXPECT_THROW(mesh_domain(region, {}, {.num_triangles = -4}), InvalidInput);
   FeatureLine slit = open_line({{1, 1}, {5, 5}});
-  slit.kind = FeatureKind::slit;
+  slit.kind = FeatureKind::kSlit;
   EXPECT_THAT([&] { mesh_domain(region, {slit}); },
               ThrowsMessage<InvalidInput>(HasSubstr("not available yet")));
 }

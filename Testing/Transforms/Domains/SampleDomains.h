@@ -33,14 +33,14 @@ inline Polyline regular_polygon(const Point<2>& centre, double radius, int corne
   return points;
 }
 
-inline FeatureLine open_line(Polyline points, BodySide body = BodySide::none) {
+inline FeatureLine open_line(Polyline points, BodySide body = BodySide::kNone) {
   FeatureLine line;
   line.points = std::move(points);
   line.body = body;
   return line;
 }
 
-inline FeatureLine closed_line(Polyline points, BodySide body = BodySide::automatic) {
+inline FeatureLine closed_line(Polyline points, BodySide body = BodySide::kAutomatic) {
   FeatureLine line;
   line.points = std::move(points);
   line.closed = true;
@@ -113,7 +113,7 @@ inline double region_area(const SimplexMesh<2>& mesh, int region) {
 }
 
 /// A line across [0,4] x [0,2] along the middle of a structured mesh, its middle vertex raised.
-inline DomainMesh bent_line(double height, BodySide body = BodySide::none) {
+inline DomainMesh bent_line(double height, BodySide body = BodySide::kNone) {
   SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 2), 4, 2, Diagonals::rising);
   mesh.vertices[7] = Point<2>(2, 1 + height);
   return attach_feature_lines(mesh,

@@ -73,7 +73,7 @@ TEST(AttachFeatureLines, DiamondOfExperimentOneLabelsItsTriangles) {
   ASSERT_EQ(domain.chains.size(), 1U);
   EXPECT_TRUE(domain.chains[0].closed);
   EXPECT_EQ(domain.chains[0].vertices.size(), 8U);
-  EXPECT_EQ(domain.chains[0].body, BodySide::left);
+  EXPECT_EQ(domain.chains[0].body, BodySide::kLeft);
   EXPECT_NEAR(testing::region_area(domain.mesh, 1), 8, 1e-12);
   EXPECT_NEAR(testing::region_area(domain.mesh, 0), 28, 1e-12);
 }
@@ -83,7 +83,7 @@ TEST(AttachFeatureLines, LinesOffTheEdgesAreNamed) {
   EXPECT_THROW(attach_feature_lines(mesh, {testing::open_line({{0, 0}, {1, 0.5}})}), InvalidInput);
   EXPECT_THROW(attach_feature_lines(mesh, {testing::open_line({{0, 0}, {2, 1}})}), InvalidInput);
   FeatureLine slide = testing::open_line({{0, 1}, {6, 1}});
-  slide.kind = FeatureKind::slide;
+  slide.kind = FeatureKind::kSlide;
   EXPECT_THROW(attach_feature_lines(mesh, {slide}), InvalidInput);
 }
 

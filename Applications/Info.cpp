@@ -31,7 +31,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What is known about a file, for people and for programs.
-struct FileInfo {
+struct FileInfo {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
   Json figures;
   std::string text;
 };

@@ -15,6 +15,8 @@ template <typename... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <typename... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
 
 std::string range_text(const Option& option) {
   const bool below = std::isfinite(option.minimum), above = std::isfinite(option.maximum);

@@ -35,7 +35,7 @@ AffineMap<Dim> read_start(const std::string& file, RunReport& report) {
 
 RegionOfInterest read_region(const std::string& file, const Raster<2>& fixed, InputFiles& input,
                              RunReport& report) {
-  const RegionOfInterest region = [&] {
+  RegionOfInterest region = [&] {
     if (has_ending(file, ".csv")) {
       report.add_input("roi", file);
       return read_region_of_interest(file);

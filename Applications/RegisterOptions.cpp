@@ -219,8 +219,9 @@ std::vector<Option> cost_options(RegisterOptions& o) {
        .choices = {"error", "refine", "compromise"}},
       {.name = "metric",
        .target = &o.metric,
-       .help = "Likeness: sum of squared differences, or landmarks alone",
-       .choices = {"ssd", "none"}},
+       .help = "Likeness: sum of squared differences, mutual information, normalised mutual "
+               "information, correlation, correlation in windows, or landmarks alone",
+       .choices = {"ssd", "mi", "nmi", "ncc", "lncc", "none"}},
       {.name = "interpolator",
        .target = &o.interpolator,
        .help = "Between the pixels of the moving image",

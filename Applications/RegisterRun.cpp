@@ -39,6 +39,14 @@ AlignmentOptions alignment_options(const RegisterOptions& options, int num_landm
   return alignment;
 }
 
+template <int Dim>
+MetricFactory<Dim> metric_of(const std::string& name) {
+  if (name == "mi") return mutual_information<Dim>();
+  if (name == "nmi") return mutual_information<Dim>({.kind = InformationKind::kNormalized});
+  if (name == "lncc") return local_ncc<Dim>();
+  return name == "ncc" ? ncc<Dim>() : ssd<Dim>();
+}
+
 /// A, found or given.
 template <int Dim>
 Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Dim>& input,
@@ -52,24 +60,13 @@ Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Di
     }
     return {fit_rigid<Dim>(input.landmarks.fixed, input.landmarks.moving).affine_map(), {}};
   }
-  const auto found =
-      align(input.fixed.image, input.moving.image, pointer(input.fixed_mask),
-            pointer(input.moving_mask), input.landmarks, wanted, progress.callback(), input.start);
+  auto found = align(input.fixed.image, input.moving.image, pointer(input.fixed_mask),
+                     pointer(input.moving_mask), input.landmarks, wanted, progress.callback(),
+                     input.start, metric_of<Dim>(options.metric));
   if (!found.report.improved) {
     report.add_warning("the initial alignment found no better map than its start, which was kept.");
   }
   return found;
-}
-
-/// Area or volume of the samples that are compared, mm^Dim.
-template <int Dim>
-double compared_measure(const RegisterInput<Dim>& input) {
-  const Raster<Dim>& raster = input.fixed.image.raster();
-  const Mask<Dim>* mask = pointer(input.fixed_mask);
-  const std::int64_t samples =
-      mask == nullptr ? raster.num_samples()
-                      : std::ranges::count_if(mask->values(), [](auto v) { return v != 0; });
-  return static_cast<double>(samples) * raster.sample_volume();
 }
 
 template <int Dim>
@@ -84,8 +81,8 @@ RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const Regist
   }
   const AlignmentReport& found = alignment.report;
   const double unit = intensity_unit(input.fixed.image, pointer(input.fixed_mask));
-  // From the mean of squares to half their integral in the mask, as splines have it.
-  const double scale = unit > 0 ? 0.5 * compared_measure(input) / (unit * unit) : 0;
+  // Squares are of normalised intensities; other metrics do not mind.
+  const double scale = options.metric == "ssd" && unit > 0 ? 1 / (unit * unit) : 1;
   outcome.alignment = alignment;
   outcome.metric_before = scale * found.metric_before;
   outcome.metric_after = scale * found.metric_after;
@@ -172,7 +169,7 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   if (options.has_metric()) {
     if (input.fixed_mask) registration.fixed_mask(*input.fixed_mask);
     if (input.moving_mask) registration.moving_mask(*input.moving_mask);
-    registration.image_weight(options.alpha);
+    registration.metric(metric_of<Dim>(options.metric)).image_weight(options.alpha);
     weights["image"] = options.alpha;
   }
   registration.interpolation(options.interpolator == "linear" ? InterpolationKind::kLinear

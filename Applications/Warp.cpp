@@ -124,7 +124,7 @@ void check(const WarpCommand& c) {
 }
 
 /// What a run has written, for the report.
-struct WarpResult {
+struct WarpResult {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
   Json figures;
   std::string summary;
   std::int64_t unresolved = 0;

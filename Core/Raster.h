@@ -37,7 +37,10 @@ struct Raster {
   Point<Dim> row_start(std::int64_t r) const {
     Vector<Dim> i = Vector<Dim>::Zero();
     i[1] = static_cast<double>(Dim == 2 ? r : r % size[1]);
-    if constexpr (Dim == 3) i[2] = static_cast<double>(r / size[1]);
+    if constexpr (Dim == 3) {
+      const std::int64_t k = r / size[1];
+      i[2] = static_cast<double>(k);
+    }
     return point(i);
   }
   /// Area (2D, mm^2) or volume (3D, mm^3) of one sample.

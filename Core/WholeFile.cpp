@@ -25,7 +25,7 @@ constexpr std::string_view kTemplate = ".crease-XXXXXX";  // the X are replaced 
 fs::path folder_of(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) fail(path, "this is a folder; name a file to write to");
-  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent, ignored)) {
     fail(path, message("the folder ", parent.string(), " does not exist; create it first"));
   }

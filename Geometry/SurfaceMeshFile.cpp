@@ -94,8 +94,7 @@ class LineReader {
     return value;
   }
   Point<3> point(std::array<std::size_t, 3> columns) const {
-    const Point<3> p(number<double>(columns[0]), number<double>(columns[1]),
-                     number<double>(columns[2]));
+    Point<3> p(number<double>(columns[0]), number<double>(columns[1]), number<double>(columns[2]));
     if (!p.allFinite()) fail("the vertex is not finite");
     return p;
   }

@@ -51,7 +51,8 @@ Sums<Dim> sum_pixels(const Image<float, Dim>& image, const Mask<Dim>* mask, doub
         Vector<Dim> position = Vector<Dim>::Zero();  // of the row
         position[1] = static_cast<double>(r % raster.size[1]) - middle[1];
         if constexpr (Dim == 3) {
-          position[2] = static_cast<double>(r / raster.size[1]) - middle[2];
+          const std::int64_t k = r / raster.size[1];
+          position[2] = static_cast<double>(k) - middle[2];
         }
         sum.mass += mass;
         sum.first += mass * position;

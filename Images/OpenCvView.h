@@ -31,9 +31,9 @@ constexpr int mat_type() {
 /// OpenCV writes is in the image. The image must outlive the matrix and not be moved or assigned to.
 template <typename Pixel>
 cv::Mat opencv_view(Image<Pixel, 2>& image) {
-  constexpr int type = opencv_view_detail::mat_type<Pixel>();
-  static_assert(type >= 0, "OpenCV has no such pixel type");
-  return cv::Mat(image.size()[1], image.size()[0], type, image.values().data());
+  constexpr int kType = opencv_view_detail::mat_type<Pixel>();
+  static_assert(kType >= 0, "OpenCV has no such pixel type");
+  return cv::Mat(image.size()[1], image.size()[0], kType, image.values().data());
 }
 
 /// The same for reading only.

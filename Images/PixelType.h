@@ -29,7 +29,8 @@ int bytes_per_value(PixelType type);
 /// Calls f(T()) with the type that is meant.
 template <typename Function>
 decltype(auto) with_pixel_type(PixelType type, Function&& f) {
-  switch (type) {  // NOLINT(bugprone-branch-clone): branches differ in the type
+  // NOLINTBEGIN(bugprone-branch-clone): branches differ in the type
+  switch (type) {
     case PixelType::kUint8:
       return f(std::uint8_t());
     case PixelType::kInt8:
@@ -51,6 +52,7 @@ decltype(auto) with_pixel_type(PixelType type, Function&& f) {
     case PixelType::kDouble:
       break;
   }
+  // NOLINTEND(bugprone-branch-clone)
   return f(double());
 }
 

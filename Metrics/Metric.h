@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -44,13 +45,27 @@ class Metric {
   virtual const Raster<Dim>& fixed_raster() const = 0;
   /// Sweeps over the samples per evaluation: 2 where a sum over all of them comes first.
   virtual int num_passes() const { return 1; }
+  /// The pass whose finish_pass() knows the value; forces may need later ones.
+  virtual int value_pass() const { return num_passes() - 1; }
+  /// Whether a pass looks at the mapped points; other passes use what an earlier one has kept, and their
+  /// rows have no displacement.
+  virtual bool needs_map(int) const { return true; }
   virtual std::unique_ptr<Sums> new_sums() const { return std::make_unique<Sums>(); }
   /// Adds what a row contributes to the pass to `sums`; the last pass writes the row's forces.
   virtual void evaluate_row(int pass, const MappedRow<Dim>& row, const ForceRow<Dim>& out,
                             Sums& sums) const = 0;
-  /// After the last pass: the energy E. @throws SolverError when fewer than a quarter of the samples
+  /// From value_pass() on: the energy E. @throws SolverError when fewer than a quarter of the samples
   /// fall inside the moving image.
   virtual double finish_pass(int pass, std::span<const std::unique_ptr<Sums>> tiles) = 0;
+
+  /// What 1 of the value is worth in half the integral of squared differences of normalised intensities,
+  /// mm^Dim: times this, values of all metrics go with the same weights of energies.
+  virtual double unit() const { return 1; }
+  /// Power of the noise that the value, times unit(), is relative to; nullopt: the value is a residual's
+  /// own power.
+  virtual std::optional<double> noise_power() const { return std::nullopt; }
+  /// Whether tissue may be expected to look alike in both images, so that optical flow is worth a try.
+  virtual bool expects_similar_intensities() const { return false; }
 
   /// The same value in double precision, one sample at a time: the reference for tests and for few
   /// samples.

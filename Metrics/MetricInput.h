@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct MetricInput {
   std::shared_ptr<const Interpolator<Dim>> moving;
   /// Weight in [0, 1] of points of the moving image; null: 1 everywhere.
   std::shared_ptr<const Interpolator<Dim>> moving_mask;
+  /// Of the moving image's coefficients where it counts; nullopt: of all of them.
+  std::optional<IntensityRange> moving_range = std::nullopt;
 };
 
 /// @throws InvalidInput when sizes do not match, weights are negative or not finite, all weights are

@@ -31,6 +31,7 @@ class SumOfSquaredDifferences final : public Metric<Dim> {
                     typename Metric<Dim>::Sums& sums) const override;
   double finish_pass(int pass,
                      std::span<const std::unique_ptr<typename Metric<Dim>::Sums>> tiles) override;
+  bool expects_similar_intensities() const override { return true; }
   double evaluate(std::span<const Point<Dim>> mapped, std::span<Vector<Dim>> forces) const override;
 
  private:

@@ -9,7 +9,7 @@
 namespace crease {
 namespace {
 
-constexpr int kSecond(int dim) { return dim * (dim + 1) / 2; }
+constexpr int num_second(int dim) { return dim * (dim + 1) / 2; }
 
 /// Number of (a, b), a <= b, in (xx, xy, yy) or (xx, xy, xz, yy, yz, zz).
 constexpr int entry(int a, int b, int dim) {
@@ -19,7 +19,7 @@ constexpr int entry(int a, int b, int dim) {
 template <int Dim>
 struct RowBuffers {
   std::array<std::vector<float>, Dim> force;
-  std::array<std::vector<float>, kSecond(Dim)> curvature;
+  std::array<std::vector<float>, num_second(Dim)> curvature;
 };
 
 template <int Dim>
@@ -134,7 +134,8 @@ double AffineObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::VectorXd>& p
 
   std::vector<Moments> moments(static_cast<std::size_t>(tiles.count()));
   double value = 0;
-  for (int pass = 0; pass < metric_->num_passes(); ++pass) {
+  const int num_passes = derivatives ? metric_->num_passes() : metric_->value_pass() + 1;
+  for (int pass = 0; pass < num_passes; ++pass) {
     const bool last = pass + 1 == metric_->num_passes();
     std::vector<std::unique_ptr<typename Metric<Dim>::Sums>> sums(moments.size());
     parallel_for(tiles.count(), [&](std::int64_t tile) {
@@ -150,7 +151,7 @@ double AffineObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::VectorXd>& p
         ForceRow<Dim> out;
         if (last && derivatives) {
           for (int a = 0; a < Dim; ++a) out.force[a] = rows.force[a].data();
-          for (int k = 0; k < kSecond(Dim); ++k) out.curvature[k] = rows.curvature[k].data();
+          for (int k = 0; k < num_second(Dim); ++k) out.curvature[k] = rows.curvature[k].data();
         }
         metric_->evaluate_row(pass, row, out, *sums[t]);
         if (!last || !derivatives) return;

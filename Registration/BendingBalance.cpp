@@ -6,6 +6,7 @@
 namespace crease {
 
 double BendingBalance::noise_density() const {
+  if (noise_power) return *noise_power * correlated_measure;
   constexpr double kLeastShare = 0.2;  // of the samples that is left to tell noise by
   const double left = std::max(counted_measure - correlated_measure * determined_parameters,
                                kLeastShare * counted_measure);

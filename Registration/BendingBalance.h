@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
+
 namespace crease {
 
 /// What one level says about the noise of the images and the roughness of the motion.
 struct BendingBalance {
-  double image_energy = 0;     ///< 1/2 int r^2 over the samples that count, r the residual
+  double image_energy = 0;  ///< 1/2 int r^2 over the samples that count, r the residual
+  /// Of r, where the metric knows it (Metric::noise_power); nullopt: found from image_energy.
+  std::optional<double> noise_power = std::nullopt;
   double counted_measure = 0;  ///< their area or volume, mm^Dim
   /// In which the noise of one sample is correlated: its own, times what filters have joined.
   double correlated_measure = 0;

@@ -81,7 +81,7 @@ struct Evaluation {
 template <int Dim>
 struct EvaluationInput {
   const DisplacementField<Dim>* displacement = nullptr;  ///< T(x) - x; needed
-  PointMap<Dim> map;                                ///< T itself, if there is more than the field
+  PointMap<Dim> map = nullptr;                      ///< T itself, if there is more than the field
   const Image<float, Dim>* determinants = nullptr;  ///< det grad T; null: differences of the field
   const DisplacementField<Dim>* truth = nullptr;
   const LabelImage<Dim>* labels = nullptr;         ///< of the fixed image
@@ -89,7 +89,7 @@ struct EvaluationInput {
   const Mask<Dim>* mask = nullptr;                 ///< of the fixed image
   const Image<float, Dim>* fixed = nullptr;
   const Image<float, Dim>* moving = nullptr;
-  Landmarks<Dim> landmarks;
+  Landmarks<Dim> landmarks = {};
 };
 
 /// Errors, rigidity of bodies, overlap, folds and image match of a registration, whoever made it.

@@ -72,7 +72,11 @@ std::vector<ImageLevel<Dim>> image_levels(const Image<float, Dim>& fixed,
     level.moving =
         make_interpolator(smooth ? smooth_121(moving_level) : moving_level, options.interpolation);
     if (moving_mask != nullptr) {
-      level.moving_mask = blurred_mask(shrink_mask(*moving_mask, moving_factors));
+      const Mask<Dim> mask = shrink_mask(*moving_mask, moving_factors);
+      level.moving_mask = blurred_mask(mask);
+      if (std::ranges::any_of(mask.values(), [](auto set) { return set != 0; })) {
+        level.moving_range = level.moving->coefficient_range(mask);
+      }
     }
     pyramid.push_back(std::move(level));
   }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "Images/Image.h"
 #include "Images/MakeInterpolator.h"
+#include "Metrics/MetricInput.h"
 
 namespace crease {
 
@@ -16,7 +18,14 @@ struct ImageLevel {
   std::vector<float> weights;  ///< of the fixed samples: 1 in the mask, 0 outside
   std::shared_ptr<const Interpolator<Dim>> moving;
   std::shared_ptr<const Interpolator<Dim>> moving_mask;  ///< null without a mask
+  std::optional<IntensityRange> moving_range;  ///< of the moving image's coefficients in it
 };
+
+/// What a metric takes of a level, with other weights of the samples.
+template <int Dim>
+MetricInput<Dim> metric_input(const ImageLevel<Dim>& level, std::vector<float> weights) {
+  return {level.fixed, std::move(weights), level.moving, level.moving_mask, level.moving_range};
+}
 
 /// How levels are filtered and read.
 struct ImageLevelOptions {

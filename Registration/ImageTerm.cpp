@@ -82,10 +82,12 @@ void ImageTerm<Dim>::sweep_tile(int pass, std::int64_t tile,
     row.end = end;
     row.start = affine_(raster.row_start(r));
     row.step = step;
-    grid_->map_row(phi, r, pointers<Dim>(rows.displacement));
+    if (metric_->needs_map(pass)) {
+      grid_->map_row(phi, r, pointers<Dim>(rows.displacement));
+      for (int a = 0; a < Dim; ++a) row.displacement[a] = rows.displacement[a].data();
+    }
     ForceRow<Dim> out;
     for (int a = 0; a < Dim; ++a) {
-      row.displacement[a] = rows.displacement[a].data();
       if (outputs.forces) out.force[a] = rows.force[a].data();
     }
     if (outputs.curvature != nullptr) {
@@ -112,10 +114,11 @@ double ImageTerm<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi,
   if (hessian != nullptr) curvature = std::make_unique<CurvatureBlocks<Dim>>(raster.size);
   std::vector<Accumulator> accumulators(static_cast<std::size_t>(count));
   double value = 0;
-  for (int pass = 0; pass < metric_->num_passes(); ++pass) {
+  const bool derivatives = gradient != nullptr || hessian != nullptr;
+  const int num_passes = derivatives ? metric_->num_passes() : metric_->value_pass() + 1;
+  for (int pass = 0; pass < num_passes; ++pass) {
     const bool last = pass + 1 == metric_->num_passes();
-    const Outputs outputs{last && (gradient != nullptr || hessian != nullptr),
-                          last ? curvature.get() : nullptr};
+    const Outputs outputs{last && derivatives, last ? curvature.get() : nullptr};
     std::vector<Sums> sums(static_cast<std::size_t>(count));
     parallel_for(count, [&](std::int64_t tile) {
       const auto t = static_cast<std::size_t>(tile);

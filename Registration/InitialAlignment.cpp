@@ -12,7 +12,6 @@
 #include "Images/IntensityRange.h"
 #include "Images/Moments.h"
 #include "Images/Pyramid.h"
-#include "Metrics/SumOfSquaredDifferences.h"
 #include "Optimizers/GaussNewton.h"
 #include "Optimizers/NelderMead.h"
 #include "Registration/AffineObjective.h"
@@ -67,31 +66,30 @@ struct SearchLevel {
   Point<Dim> centroid;
   double radius = 1;  // mm, centroid to the farthest corner
   double pixel = 1;   // mm
-  double weight = 1;  // sum of weights times sample volume
 };
 
 /// @param start  samples that it maps outside the moving image do not count.
 template <int Dim>
-SearchLevel<Dim> search_level(const ImageLevel<Dim>& level, const AffineMap<Dim>& start) {
+SearchLevel<Dim> search_level(const ImageLevel<Dim>& level, const AffineMap<Dim>& start,
+                              const MetricFactory<Dim>& metric) {
   SearchLevel<Dim> search;
-  MetricInput<Dim> input{level.fixed, level.weights, level.moving, level.moving_mask};
   const Raster<Dim>& raster = level.fixed.raster();
-  keep_samples_inside<Dim>(raster, start, level.moving->raster(), 0, input.weights);
+  std::vector<float> weights = level.weights;
+  keep_samples_inside<Dim>(raster, start, level.moving->raster(), 0, weights);
   Point<Dim> sum = Point<Dim>::Zero();
   double weight = 0;
   for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
     for (int i = 0; i < raster.size[0]; ++i) {
-      const double w = input.weights[static_cast<std::size_t>(r * raster.size[0] + i)];
+      const double w = weights[static_cast<std::size_t>(r * raster.size[0] + i)];
       sum += w * (raster.row_start(r) + i * raster.index_to_point().col(0));
       weight += w;
     }
   }
-  search.metric = std::make_shared<SumOfSquaredDifferences<Dim>>(std::move(input));
+  search.metric = metric(metric_input(level, std::move(weights)));
   search.centroid = sum / weight;
   const Box<Dim> box = raster.bounds();
   search.radius = (box.upper - search.centroid).cwiseMax(search.centroid - box.lower).norm();
   search.pixel = raster.spacing.minCoeff();
-  search.weight = weight * raster.sample_volume();
   return search;
 }
 
@@ -179,9 +177,9 @@ AffineMap<Dim> refine(const SearchLevel<Dim>& level, const AffineMap<Dim>& start
 }
 
 template <int Dim>
-double mean_square(const SearchLevel<Dim>& level, const AffineMap<Dim>& map) {
+double value_at(const SearchLevel<Dim>& level, const AffineMap<Dim>& map) {
   SearchStart<Dim> search = search_start(level, map, false);
-  return 2 * search.objective.evaluate(search.parameters, nullptr, nullptr) / level.weight;
+  return search.objective.evaluate(search.parameters, nullptr, nullptr);
 }
 
 template <int Dim>
@@ -236,7 +234,7 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
                      const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
                      const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
                      const RegistrationCallback& progress,
-                     const std::optional<AffineMap<Dim>>& given) {
+                     const std::optional<AffineMap<Dim>>& given, const MetricFactory<Dim>& metric) {
   require_contrast(fixed, fixed_mask, "fixed");
   require_contrast(moving, moving_mask, "moving");
   Alignment<Dim> result;
@@ -249,11 +247,11 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
       1 + std::max(0, static_cast<int>(std::lround(std::log2(std::max(1.0, largest / 64.0)))));
   const auto pyramid = image_levels(fixed, moving, fixed_mask, moving_mask,
                                     options.search == AlignmentSearch::kNone ? 1 : levels);
-  const SearchLevel<Dim> finest = search_level(pyramid.back(), start);
-  result.report.metric_before = mean_square(finest, start);
+  const SearchLevel<Dim> finest = search_level(pyramid.back(), start, metric);
+  result.report.metric_before = value_at(finest, start);
   if (options.search != AlignmentSearch::kNone) {
     for (std::size_t l = 0; l < pyramid.size(); ++l) {
-      const SearchLevel<Dim> level = search_level(pyramid[l], result.map);
+      const SearchLevel<Dim> level = search_level(pyramid[l], result.map, metric);
       if (progress && !progress({.stage = "alignment",
                                  .level = static_cast<int>(l) + 1,
                                  .num_levels = static_cast<int>(pyramid.size())})) {
@@ -265,11 +263,12 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
       }
       const bool rigid = options.search == AlignmentSearch::kRigid;
       for (int again = 0; again < 2; ++again) {  // with the samples that are inside by then
-        result.map = refine(search_level(pyramid[l], result.map), result.map, rigid, evaluations);
+        result.map =
+            refine(search_level(pyramid[l], result.map, metric), result.map, rigid, evaluations);
       }
     }
   }
-  result.report.metric_after = mean_square(finest, result.map);
+  result.report.metric_after = value_at(finest, result.map);
   if (result.report.metric_after > result.report.metric_before) {
     result.map = start;
     result.report.metric_after = result.report.metric_before;
@@ -284,7 +283,7 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
   template Alignment<Dim> align<Dim>(const Image<float, Dim>&, const Image<float, Dim>&,        \
                                      const Mask<Dim>*, const Mask<Dim>*, const Landmarks<Dim>&, \
                                      const AlignmentOptions&, const RegistrationCallback&,      \
-                                     const GivenMap<Dim>&);                                     \
+                                     const GivenMap<Dim>&, const MetricFactory<Dim>&);          \
   template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,               \
                                       const std::string&);                                      \
   template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&, const AffineMap<Dim>&);

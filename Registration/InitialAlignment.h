@@ -5,6 +5,7 @@
 
 #include "Images/Image.h"
 #include "Registration/Landmarks.h"
+#include "Registration/MetricFactories.h"
 #include "Registration/Progress.h"
 #include "Transforms/AffineMap.h"
 
@@ -29,7 +30,7 @@ struct AlignmentOptions {
 
 /// What the alignment did.
 struct AlignmentReport {
-  double metric_before = 0;  ///< mean squared difference at the start, normalised intensities
+  double metric_before = 0;  ///< at the start, at full resolution
   double metric_after = 0;
   double angle_deg = 0;
   double shift_mm = 0;   ///< of the fixed mask's centroid
@@ -46,7 +47,7 @@ struct Alignment {
 
 /// Finds the rigid or affine map A that the spline starts from: a start by moments, centres or
 /// landmarks, then a search by the Nelder-Mead simplex on a pyramid (about 64 samples across at the
-/// coarsest level), minimising the mean squared difference, then Gauss-Newton.
+/// coarsest level), then Gauss-Newton, by a metric that may be any.
 ///
 /// @param landmarks  may be empty; two (rigid) or three (affine) and more replace the start by their
 ///                   least-squares fit when the start asks for landmarks.
@@ -58,7 +59,8 @@ Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& mo
                      const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
                      const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
                      const RegistrationCallback& progress = {},
-                     const std::optional<AffineMap<Dim>>& given = std::nullopt);
+                     const std::optional<AffineMap<Dim>>& given = std::nullopt,
+                     const MetricFactory<Dim>& metric = ssd<Dim>());
 
 /// @throws InvalidInput when all pixels in the mask (null: all) have one value, or the mask is empty.
 /// @param which  "fixed" or "moving", for the message.
@@ -71,14 +73,14 @@ template <int Dim>
 void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
                      const AffineMap<Dim>& map);
 
-#define CREASE_DECLARE(Dim)                                                                     \
-  extern template Alignment<Dim> align<Dim>(const Image<float, Dim>&, const Image<float, Dim>&, \
-                                            const Mask<Dim>*, const Mask<Dim>*,                 \
-                                            const Landmarks<Dim>&, const AlignmentOptions&,     \
-                                            const RegistrationCallback&, const GivenMap<Dim>&); \
-  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,        \
-                                             const std::string&);                               \
-  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,             \
+#define CREASE_DECLARE(Dim)                                                                   \
+  extern template Alignment<Dim> align<Dim>(                                                  \
+      const Image<float, Dim>&, const Image<float, Dim>&, const Mask<Dim>*, const Mask<Dim>*, \
+      const Landmarks<Dim>&, const AlignmentOptions&, const RegistrationCallback&,            \
+      const GivenMap<Dim>&, const MetricFactory<Dim>&);                                       \
+  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,      \
+                                             const std::string&);                             \
+  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,           \
                                             const AffineMap<Dim>&);
 CREASE_DECLARE(2)
 CREASE_DECLARE(3)

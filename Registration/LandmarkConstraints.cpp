@@ -105,7 +105,7 @@ std::vector<int> with_dependents(const DependentRow& row, const std::vector<int>
 /// Where a landmark is: "(3, 4) mm, in triangle 57".
 template <int Dim>
 std::string place_text(const Point<Dim>& p, const SplineBasis<Dim>& basis) {
-  const std::string text = point_text<Dim>(p);
+  std::string text = point_text<Dim>(p);
   const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis);
   if (triangular == nullptr) return text;
   return message(text, ", in ", Dim == 2 ? "triangle " : "tetrahedron ",

@@ -91,7 +91,7 @@ FlowField optical_flow(const Image<float, 2>& fixed, const std::vector<float>& m
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const auto i = static_cast<std::size_t>(y) * width + x;
-      const cv::Vec2f f = flow.at<cv::Vec2f>(y, x);
+      const cv::Vec2f& f = flow.at<cv::Vec2f>(y, x);
       const Point<2> from = raster.point({x, y});
       const Point<2> target = affine(from + to_mm * Vector<2>(f[0], f[1]));
       const auto sample = moving.evaluate(target);

@@ -4,20 +4,12 @@
 
 #include "Core/Error.h"
 #include "Images/ImageFile.h"
-#include "Metrics/SumOfSquaredDifferences.h"
 #include "Registration/RegistrationParts.h"
 #include "Registration/RegistrationRun.h"
 #include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/Energies/RigidityEnergy.h"
 
 namespace crease {
-
-template <int Dim>
-MetricFactory<Dim> ssd() {
-  return [](MetricInput<Dim> input) {
-    return std::make_unique<SumOfSquaredDifferences<Dim>>(std::move(input));
-  };
-}
 
 template <int Dim>
 EnergyFactory<Dim> bending(WeightField<Dim> rigid) {
@@ -129,7 +121,9 @@ Registration<Dim>& Registration<Dim>::null_space(NullSpaceKind kind) {
 }
 
 template <int Dim>
-Registration<Dim>& Registration<Dim>::optimizer(std::shared_ptr<const Optimizer> optimizer) {
+Registration<Dim>& Registration<Dim>::optimizer(
+    std::shared_ptr<const Optimizer>
+        optimizer) {  // NOLINT(performance-unnecessary-value-param): moved
   parts_->optimizer = std::move(optimizer);
   return *this;
 }
@@ -159,8 +153,6 @@ RegistrationResult<Dim> Registration<Dim>::run(const RegistrationCallback& progr
   return RegistrationRun<Dim>(*parts_, progress).execute();
 }
 
-template MetricFactory<2> ssd<2>();
-template MetricFactory<3> ssd<3>();
 template EnergyFactory<2> bending<2>(WeightField<2>);
 template EnergyFactory<3> bending<3>(WeightField<3>);
 template EnergyFactory<2> rigidity<2>(WeightField<2>);

@@ -9,13 +9,12 @@
 
 #include "Images/Image.h"
 #include "Images/MakeInterpolator.h"
-#include "Metrics/Metric.h"
-#include "Metrics/MetricInput.h"
 #include "Optimizers/NullSpace.h"
 #include "Optimizers/Optimizer.h"
 #include "Registration/InitialAlignment.h"
 #include "Registration/LandmarkConstraints.h"
 #include "Registration/Landmarks.h"
+#include "Registration/MetricFactories.h"
 #include "Registration/Progress.h"
 #include "Registration/RegistrationObjective.h"
 #include "Transforms/Energies/WeightField.h"
@@ -25,10 +24,6 @@ namespace crease {
 
 template <int Dim>
 struct RegistrationParts;
-
-/// Makes the metric of one level from that level's images.
-template <int Dim>
-using MetricFactory = std::function<std::unique_ptr<Metric<Dim>>(MetricInput<Dim>)>;
 
 /// Makes an energy when the basis and the affine map A of the run are known.
 template <int Dim>
@@ -43,15 +38,12 @@ EnergyFactory<Dim> bending(WeightField<Dim> rigid = nullptr);
 template <int Dim>
 EnergyFactory<Dim> rigidity(WeightField<Dim> rigid = body_weights<Dim>());
 
-/// Sum of squared differences, the default metric.
-template <int Dim>
-MetricFactory<Dim> ssd();
-
 /// From coarse to fine.
 struct Schedule {
   int levels = 3;            ///< image pyramid, a factor of 2 each; fewer for small images
   double level_bending = 4;  ///< the energy named "bending" weighs this much more per coarser level
-  bool optical_flow = true;  ///< try a start fitted to dense optical flow (2D, same modality)
+  /// Try a start fitted to dense optical flow (2D, metrics that expect similar intensities).
+  bool optical_flow = true;
   /// Weighs the energy named "bending" by the noise and the roughness that the levels show
   /// (BendingBalance), from its weight on, and more where the finest map folds; and soft landmarks by
   /// the noise, so that their uncertainty in mm is what it says beside the image's.

@@ -78,8 +78,8 @@ void RegistrationRun<Dim>::find_initial_map() {
   } else if (parts_.has_images()) {
     tell("alignment", 0, 0, 0);
     const Alignment<Dim> found =
-        align(fixed_, moving_, parts_.fixed_mask_pointer(), parts_.moving_mask_pointer(),
-              parts_.landmarks, parts_.alignment, progress_);
+        align<Dim>(fixed_, moving_, parts_.fixed_mask_pointer(), parts_.moving_mask_pointer(),
+                   parts_.landmarks, parts_.alignment, progress_, std::nullopt, parts_.metric);
     affine_ = found.map;
     result_.alignment = found.report;
     if (!found.report.improved) {
@@ -183,10 +183,11 @@ void RegistrationRun<Dim>::choose_samples(std::size_t l, const std::vector<Phi>&
   }
   level.counted_measure = sum * image.fixed.raster().sample_volume();
   level.correlated_measure = image.fixed.raster().sample_volume() * correlated_samples(l);
-  level.noise_floor = 1e-11 * parts_.image_weight * level.counted_measure;
-  level.image = std::make_shared<ImageTerm<Dim>>(
-      level.grid, parts_.metric({image.fixed, std::move(weights), image.moving, image.moving_mask}),
-      affine_);
+  std::shared_ptr<Metric<Dim>> metric = parts_.metric(metric_input(image, std::move(weights)));
+  level.image_weight = parts_.image_weight * metric->unit();
+  level.noise_floor = metric->noise_power() ? -std::numeric_limits<double>::infinity()
+                                            : 1e-11 * parts_.image_weight * level.counted_measure;
+  level.image = std::make_shared<ImageTerm<Dim>>(level.grid, std::move(metric), affine_);
 }
 
 template <int Dim>
@@ -196,7 +197,7 @@ std::unique_ptr<RegistrationObjective<Dim>> RegistrationRun<Dim>::objective(
   for (auto& energy : energies) {
     if (energy.name == "bending") energy.weight *= level.bending_factor;
   }
-  return std::make_unique<RegistrationObjective<Dim>>(pattern_, level.image, parts_.image_weight,
+  return std::make_unique<RegistrationObjective<Dim>>(pattern_, level.image, level.image_weight,
                                                       std::move(energies));
 }
 
@@ -226,12 +227,18 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Ph
 }
 
 template <int Dim>
+bool RegistrationRun<Dim>::expects_similar_intensities() const {
+  return !images_.empty() && parts_.metric(metric_input(images_.front(), images_.front().weights))
+                                 ->expects_similar_intensities();
+}
+
+template <int Dim>
 std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
   std::vector<Phi> candidates;
   const bool pulled = null_space_->rank() > 0 || energies_.size() > parts_.energies.size();
   candidates.push_back(pulled ? StartingPoint<Dim>(pattern_, *null_space_, energies_).smoothest()
                               : Phi::Zero(null_space_->full_size()));
-  if (Dim == 2 && parts_.schedule.optical_flow && !images_.empty()) {
+  if (Dim == 2 && parts_.schedule.optical_flow && expects_similar_intensities()) {
     candidates.push_back(fitted_to_flow(candidates.front()));
   }
   return candidates;
@@ -246,7 +253,9 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
   if (parts_.has_images()) {
     const bool finest = level + 1 == levels_.size();
     const bool last = finest && (!weights_ || weights_->num_balancings() >= std::ssize(levels_));
-    stopping.relative_decrease = last ? 1e-3 : 3e-3;
+    // Of half the noise's power, which squared differences are about, and information some five times.
+    const bool in_units_of_noise = levels_[level].image->metric().noise_power().has_value();
+    stopping.relative_decrease = (last ? 1e-3 : 3e-3) * (in_units_of_noise ? 0.2 : 1);
     stopping.small_decreases = 1;
     stopping.step_length = finest ? 0.02 : 0.1;
   } else {
@@ -342,7 +351,7 @@ void RegistrationRun<Dim>::keep_better(const Phi& start, Phi& phi) {
   const auto cost = objective(levels_.back());
   const double at_start = cost->evaluate(start, nullptr, nullptr);
   const auto terms = cost->terms();
-  if (cost->evaluate(phi, nullptr, nullptr) <= (1 + kRounding) * at_start) return;
+  if (cost->evaluate(phi, nullptr, nullptr) <= at_start + kRounding * std::abs(at_start)) return;
   phi = start;
   LevelReport& finest = result_.levels.back();
   finest.terms_after = terms;
@@ -357,7 +366,9 @@ bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level
   if (!weights_ || bending == level.terms_after.end()) return false;
   const bool finest = l + 1 == levels_.size();
   if (finest && folds(phi)) return weights_->stiffen(energies_);
-  return weights_->balance({.image_energy = level.terms_after.at("image"),
+  const Metric<Dim>& metric = here.image->metric();
+  return weights_->balance({.image_energy = metric.unit() * level.terms_after.at("image"),
+                            .noise_power = metric.noise_power(),
                             .counted_measure = here.counted_measure,
                             .correlated_measure = here.correlated_measure,
                             .bending_energy = bending->second,
@@ -367,7 +378,7 @@ bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level
 
 template <int Dim>
 double RegistrationRun<Dim>::determined_by_images(std::size_t l, const Phi& phi) {
-  RegistrationObjective<Dim> image(pattern_, levels_[l].image, parts_.image_weight, {});
+  RegistrationObjective<Dim> image(pattern_, levels_[l].image, levels_[l].image_weight, {});
   return determined_parameters(image, *objective(levels_[l]), phi, *null_space_, *solver_);
 }
 

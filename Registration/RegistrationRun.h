@@ -26,6 +26,7 @@ class RegistrationRun {
     int shrink = 1;
     std::shared_ptr<const BoundGrid<Dim>> grid;
     std::shared_ptr<ImageTerm<Dim>> image;  // null without images
+    double image_weight = 0;                // alpha in the unit of the metric
     double bending_factor = 1;
     double counted_measure = 0;     // of the samples that count
     double correlated_measure = 0;  // in which a sample's noise is correlated
@@ -40,6 +41,7 @@ class RegistrationRun {
   void choose_samples(std::size_t level, const std::vector<Phi>& starts);
   void collect_energies();
   void make_solver();
+  bool expects_similar_intensities() const;
   std::vector<Phi> starts();
   Phi fitted_to_flow(const Phi& near);
   void optimise();

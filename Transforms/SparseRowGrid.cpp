@@ -170,7 +170,8 @@ std::vector<typename SparseRowGrid<Dim>::BlockSample> SparseRowGrid<Dim>::block_
   const auto count = static_cast<std::size_t>(blocks.sums[0].size());
   std::vector<BlockSample> nearest(count, BlockSample{nullptr, nullptr, 0, 0});
   std::vector<double> distance(count, std::numeric_limits<double>::infinity());
-  const auto offset = [](std::int64_t i) { return double(i % kBlock - kBlock / 2); };
+  constexpr int kMiddle = kBlock / 2;
+  const auto offset = [](std::int64_t i) { return static_cast<double>(i % kBlock - kMiddle); };
   for (std::int64_t r = 0; r < raster_.num_rows(); ++r) {
     const std::int64_t j = Dim == 2 ? r : r % raster_.size[1];
     const std::int64_t k = Dim == 2 ? 0 : r / raster_.size[1];

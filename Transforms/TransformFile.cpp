@@ -156,12 +156,11 @@ std::unique_ptr<Transform<InDim, OutDim>> load_transform(const std::filesystem::
   }
 }
 
-#define CREASE_INSTANTIATE(In, Out)                                                      \
-  template void save_transform(const Transform<In, Out>&, const std::filesystem::path&); \
-  template std::unique_ptr<Transform<In, Out>> load_transform(const std::filesystem::path&);
-CREASE_INSTANTIATE(2, 2)
-CREASE_INSTANTIATE(3, 3)
-CREASE_INSTANTIATE(2, 3)
-#undef CREASE_INSTANTIATE
+template void save_transform(const Transform<2, 2>&, const std::filesystem::path&);
+template void save_transform(const Transform<3, 3>&, const std::filesystem::path&);
+template void save_transform(const Transform<2, 3>&, const std::filesystem::path&);
+template std::unique_ptr<Transform<2, 2>> load_transform(const std::filesystem::path&);
+template std::unique_ptr<Transform<3, 3>> load_transform(const std::filesystem::path&);
+template std::unique_ptr<Transform<2, 3>> load_transform(const std::filesystem::path&);
 
 }  // namespace crease

@@ -42,12 +42,12 @@ bool is_true(const std::string& value) {
 
 std::uint64_t bytes_of_type(const std::filesystem::path& path, std::string type) {
   if (type.ends_with("_ARRAY")) type.resize(type.size() - 6);
-  static const std::map<std::string, std::uint64_t> kBytes{
+  static const std::map<std::string, std::uint64_t> bytes{
       {"MET_CHAR", 1},      {"MET_UCHAR", 1},      {"MET_SHORT", 2}, {"MET_USHORT", 2},
       {"MET_INT", 4},       {"MET_UINT", 4},       {"MET_LONG", 4},  {"MET_ULONG", 4},
       {"MET_LONG_LONG", 8}, {"MET_ULONG_LONG", 8}, {"MET_FLOAT", 4}, {"MET_DOUBLE", 8}};
-  const auto found = kBytes.find(type);
-  if (found == kBytes.end())
+  const auto found = bytes.find(type);
+  if (found == bytes.end())
     fail(path, message("MetaImage pixels of type '", type, "' are not supported"));
   return found->second;
 }

@@ -23,8 +23,10 @@
 
 // ITK may bring a TIFF library of its own, under these names and without a header.
 using TiffMessageHandler = void (*)(const char*, const char*, va_list);
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" __attribute__((weak)) TiffMessageHandler itk_TIFFSetWarningHandler(TiffMessageHandler);
 extern "C" __attribute__((weak)) TiffMessageHandler itk_TIFFSetErrorHandler(TiffMessageHandler);
+// NOLINTEND(readability-identifier-naming)
 
 namespace crease {
 namespace {

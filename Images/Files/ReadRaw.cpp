@@ -55,7 +55,7 @@ void drop_slice_axis(RawImage& image) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(3, 2);  // of the coordinates that are kept
   if (!in_xy) {
     basis = plane;
-    image.notes.push_back(
+    image.notes.emplace_back(
         "the slice is not parallel to the xy plane: coordinates are those within its own plane");
   }
   const bool vectors = !image.colour && image.num_components == 3 && image.data != nullptr;
@@ -169,10 +169,10 @@ RawImage decode(const std::filesystem::path& path, ImageFormat format, bool with
   const DicomFacts facts = check_dicom(path);
   RawImage image = read_with_itk(path, format, with_pixels);
   if (!facts.has_spacing) {
-    image.notes.push_back("the file does not say how large its pixels are: 1 mm is assumed");
+    image.notes.emplace_back("the file does not say how large its pixels are: 1 mm is assumed");
   }
   if (facts.monochrome1) {
-    image.notes.push_back(
+    image.notes.emplace_back(
         "MONOCHROME1: the stored values are turned round, high values are bright");
   }
   return image;
@@ -195,7 +195,7 @@ void make_grey(const std::filesystem::path& path, RawImage& image) {
                        " components, not an image of grey values"));
   }
   if (image.num_components == 2 || image.num_components == 4) {
-    image.notes.push_back("transparency ignored");
+    image.notes.emplace_back("transparency ignored");
   }
   if (image.num_components == 2) {
     with_pixel_type(image.type, [&](auto zero) { keep_first_component<decltype(zero)>(image); });
@@ -210,7 +210,7 @@ void make_grey(const std::filesystem::path& path, RawImage& image) {
   with_pixel_type(image.type, [&](auto zero) {
     mix_colours<decltype(zero)>(image, grey.values<float>(), coloured);
   });
-  if (coloured) image.notes.push_back("colour converted to grey");
+  if (coloured) image.notes.emplace_back("colour converted to grey");
   image.type = PixelType::kFloat;
   image.num_components = 1;
   image.data = std::move(grey.data);

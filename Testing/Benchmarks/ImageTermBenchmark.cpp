@@ -1,5 +1,5 @@
-// One pass over an image pair: SSD alone at points that are given, and fused with the map and its adjoint
-// for cubic splines with 625 control points.
+// One pass over an image pair: SSD alone at points that are given, and metrics fused with the map and its
+// adjoint for cubic splines with 625 control points.
 #include "Registration/ImageTerm.h"
 
 #include <benchmark/benchmark.h>
@@ -8,6 +8,7 @@
 
 #include "Images/MakeInterpolator.h"
 #include "Metrics/SumOfSquaredDifferences.h"
+#include "Registration/MetricFactories.h"
 #include "Registration/RowTiles.h"
 #include "Testing/Benchmarks/Counters.h"
 #include "Testing/Benchmarks/Samples.h"
@@ -21,12 +22,15 @@ std::array<int, 2> size_of(const benchmark::State& state) {
   return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1))};
 }
 
-std::unique_ptr<Metric<2>> ssd_of(const std::array<int, 2>& size) {
+MetricInput<2> images_of(const std::array<int, 2>& size) {
   Image<float, 2> fixed = wavy_image<2>(size), moving = fixed;
   for (float& v : moving.values()) v *= 0.9f;
   std::vector<float> weights(fixed.values().size(), 1.0f);
-  return std::make_unique<SumOfSquaredDifferences<2>>(
-      MetricInput<2>{std::move(fixed), std::move(weights), make_interpolator(moving), nullptr});
+  return {std::move(fixed), std::move(weights), make_interpolator(moving), nullptr};
+}
+
+std::unique_ptr<Metric<2>> ssd_of(const std::array<int, 2>& size) {
+  return std::make_unique<SumOfSquaredDifferences<2>>(images_of(size));
 }
 
 void sizes(benchmark::internal::Benchmark* b, const char* argument,
@@ -78,9 +82,9 @@ void BM_Ssd(benchmark::State& state) {
 BENCHMARK(BM_Ssd)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
 
 /// Fourth argument: 0 value; 1 value, force and adjoint: the gradient; 2 and the Gauss-Newton matrix.
-void fused_ssd(benchmark::State& state, const SplineBasis<2>& basis) {
+void fused(benchmark::State& state, const SplineBasis<2>& basis,
+           std::shared_ptr<Metric<2>> metric) {
   const Threads threads(static_cast<int>(state.range(2)));
-  std::shared_ptr<Metric<2>> metric = ssd_of(size_of(state));
   const Raster<2> raster = metric->fixed_raster();
   ImageTerm<2> term(basis.bind(raster), metric, {});
   const ControlPoints<2> phi = random_control_points(basis);
@@ -95,15 +99,31 @@ void fused_ssd(benchmark::State& state, const SplineBasis<2>& basis) {
 }
 
 void BM_FusedSsdTriangular(benchmark::State& state) {
-  fused_ssd(state,
-            TriangularBSplineBasis<2>(jittered_net(raster_of<2>(size_of(state)), {8, 8}, 3, 0.3)));
+  fused(state,
+        TriangularBSplineBasis<2>(jittered_net(raster_of<2>(size_of(state)), {8, 8}, 3, 0.3)),
+        ssd_of(size_of(state)));
 }
 BENCHMARK(BM_FusedSsdTriangular)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
 
 void BM_FusedSsdTensor(benchmark::State& state) {
-  fused_ssd(state, *tensor_basis(raster_of<2>(size_of(state)), 22));
+  fused(state, *tensor_basis(raster_of<2>(size_of(state)), 22), ssd_of(size_of(state)));
 }
 BENCHMARK(BM_FusedSsdTensor)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
+
+/// The same images under every metric; fourth argument as above.
+void fused_metric(benchmark::State& state, const MetricFactory<2>& metric) {
+  fused(state, *tensor_basis(raster_of<2>(size_of(state)), 22), metric(images_of(size_of(state))));
+}
+void BM_FusedNcc(benchmark::State& state) { fused_metric(state, ncc<2>()); }
+void BM_FusedLncc(benchmark::State& state) { fused_metric(state, local_ncc<2>()); }
+void BM_FusedMi(benchmark::State& state) { fused_metric(state, mutual_information<2>()); }
+void BM_FusedMiCubic(benchmark::State& state) {
+  fused_metric(state, mutual_information<2>({.fixed_window = FixedWindow::kCubic}));
+}
+BENCHMARK(BM_FusedNcc)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
+BENCHMARK(BM_FusedLncc)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
+BENCHMARK(BM_FusedMi)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
+BENCHMARK(BM_FusedMiCubic)->Apply([](auto* b) { sizes(b, "outputs", {1}); });
 
 }  // namespace
 }  // namespace crease::benchmarks

@@ -206,8 +206,8 @@ double SyntheticRegistration::add_cell(int cx, int cy, const Eigen::Ref<const Ei
   const Eigen::Map<const Eigen::Matrix<double, 2, 16>> phi(local.data());
   double value = 0.0;
   for (int s = 0; s < kPerCell * kPerCell; ++s) {
-    const double tx = (s % kPerCell + 0.5) / kPerCell;
-    const double ty = (s / kPerCell + 0.5) / kPerCell;
+    const int i_point = s % kPerCell, j_point = s / kPerCell;
+    const double tx = (i_point + 0.5) / kPerCell, ty = (j_point + 0.5) / kPerCell;
     Eigen::Matrix<double, 16, 1> B, Bx, By;
     for (int j = 0; j < 4; ++j) {
       B.segment<4>(4 * j) = basis(tx) * basis(ty)[j];

@@ -9,7 +9,7 @@ KnotNet<2> jittered_net(const Raster<2>& raster, const std::array<int, 2>& cells
                         double alpha) {
   const Box<2> box = raster.bounds();
   DomainMesh domain;
-  domain.mesh = structured_triangulation(box, cells[0], cells[1], Diagonals::rising);
+  domain.mesh = structured_triangulation(box, cells[0], cells[1], Diagonals::kRising);
   const Vector<2> cell = box.size().cwiseQuotient(Vector<2>(cells[0], cells[1]));
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> uniform(-0.2, 0.2);

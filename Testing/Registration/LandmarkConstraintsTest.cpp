@@ -78,8 +78,8 @@ TEST(LandmarkConstraints, RowsSumToOneOnKnotLines) {
       if (domain.basis->contains(knot)) places.push_back(knot);
     }
   }
-  EXPECT_GT(domain.plan.count(VertexRule::junction), 0);
-  EXPECT_GT(domain.plan.count(VertexRule::border_meeting), 0);
+  EXPECT_GT(domain.plan.count(VertexRule::kJunction), 0);
+  EXPECT_GT(domain.plan.count(VertexRule::kBorderMeeting), 0);
   for (const auto& p : places) {
     Landmarks<2> one;
     one.fixed = one.moving = {p};
@@ -155,7 +155,8 @@ TEST(LandmarkConstraints, ACubicCoreHoldsTenLandmarks) {
 TEST(LandmarkConstraints, ContradictionsAreRefusedOrCompromised) {
   Landmarks<2> landmarks;
   for (int j = 0; j < 20; ++j) {
-    const Point<2> p(41 + 3.1 * (j % 5), 42 + 4.3 * (j / 5));
+    const int column = j % 5, row = j / 5;
+    const Point<2> p(41 + 3.1 * column, 42 + 4.3 * row);
     landmarks.fixed.push_back(p);
     landmarks.moving.push_back(p + Vector<2>(std::sin(5.0 * j), std::cos(7.0 * j)));
   }

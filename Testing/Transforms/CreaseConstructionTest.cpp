@@ -88,7 +88,7 @@ TEST_P(CreaseConstruction, IsContinuousAndSmoothOnAllOtherEdges) {
     const Jumps spline(knots.net, 6);
     EXPECT_LT(spline.largest_on_knot_lines()[0], 1e-11) << "degree " << degree;
     const auto collapsed = [&](int v) {  // asked for: edges at a sharp corner are hinges
-      return knots.plan.vertices[v].rule == VertexRule::collapsed;
+      return knots.plan.vertices[v].rule == VertexRule::kCollapsed;
     };
     const auto other = spline.largest_on_edges([&](int a, int b) {
       return !testing::is_crease(knots.net, a, b) && !collapsed(a) && !collapsed(b);

@@ -92,9 +92,9 @@ int CsvTable::column(const std::string& name) const {
 }
 
 const std::string& CsvTable::text(int row, const std::string& name) const {
-  static const std::string kNone;
+  static const std::string none;
   const int c = column(name);
-  return c < 0 ? kNone : rows_[row][c];
+  return c < 0 ? none : rows_[row][c];
 }
 
 double CsvTable::number(int row, const std::string& name) const {

@@ -36,9 +36,11 @@ class SizeFieldCriteria : public CGAL::Delaunay_mesh_criteria_2<Triangulation> {
   SizeFieldCriteria(double shape_bound, const std::function<double(const Point<2>&)>& largest_edge)
       : Base(shape_bound), largest_edge_(&largest_edge) {}
 
+  // NOLINTBEGIN(readability-identifier-naming): CGAL asks for these names
   class Is_bad {
    public:
     using Point_2 = Triangulation::Point;
+    // NOLINTEND(readability-identifier-naming)
     Is_bad(double shape_bound, const std::function<double(const Point<2>&)>& largest_edge)
         : shape_bound_(shape_bound), largest_edge_(largest_edge) {}
 

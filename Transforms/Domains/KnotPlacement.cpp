@@ -187,7 +187,7 @@ void CloudBuilder::shrink(int vertex) {
     plan.radius /= 2;
   } else {
     plan.radius = 0;
-    plan.rule = VertexRule::collapsed;
+    plan.rule = VertexRule::kCollapsed;
     const Point<2>& v = domain_.mesh.vertices[vertex];
     result_.plan.warnings.push_back(
         message("the knots at (", v.x(), ", ", v.y(),
@@ -242,8 +242,8 @@ bool CloudBuilder::band_outside_body(int edge) const {
   for (int v : topology_.edges()[edge].vertices) {
     if (sketches_[v].plan.radius == 0) continue;
     const VertexRule rule = sketches_[v].plan.rule;
-    if (rule == VertexRule::straight || rule == VertexRule::border_meeting) continue;
-    if (rule != VertexRule::fanned && rule != VertexRule::corner) return false;
+    if (rule == VertexRule::kStraight || rule == VertexRule::kBorderMeeting) continue;
+    if (rule != VertexRule::kFanned && rule != VertexRule::kCorner) return false;
     int num_one_body = 0;
     for (int e : topology_.edges_at(v)) num_one_body += lines_[e].is_line && lines_[e].one_body();
     if (num_one_body != 2) return false;

@@ -12,7 +12,7 @@ namespace crease {
 
 /// Where the knots of border vertices go: into the wedge outside the domain; onto straight stretches of the border,
 /// corners collapsed (boundary values then depend on the border's control points alone); or all onto the vertex.
-enum class BorderRule { outside, on_straight_border, collapsed };
+enum class BorderRule { kOutside, kOnStraightBorder, kCollapsed };
 
 /// How far from their vertices knots lie, and what creases do to them.
 struct KnotOptions {
@@ -25,7 +25,7 @@ struct KnotOptions {
   double fan_body = 0.25;  ///< fan radius over the shorter line edge, body on one side; at most 0.4
   double fan_both = 0.35;  ///< the same without a body, or with bodies on both sides
   double fan_corner = 0.2;  ///< the same where the line turns by more than 60 degrees
-  BorderRule border = BorderRule::outside;
+  BorderRule border = BorderRule::kOutside;
   bool structured =
       false;  ///< one direction for all inner clouds: congruent triangles, congruent knots
   bool collapse_inside_bodies =
@@ -34,24 +34,24 @@ struct KnotOptions {
 
 /// What happened to a vertex.
 enum class VertexRule {
-  inner,           ///< generic cloud
-  border,          ///< knots outside the domain, or along its border
-  straight,        ///< on a line that goes straight on: knots on it
-  fanned,          ///< on a turning line with a body on one side: knots on the outer side
-  tangent,         ///< on a turning line without a body: knots on the tangent
-  corner,          ///< line turns by more than 60 degrees, blunted: as fanned or tangent, smaller
-  collapsed,       ///< all knots at the vertex
-  junction,        ///< three or more line edges: generic cloud
-  line_end,        ///< a line ends here inside the domain: generic cloud
-  border_meeting,  ///< a line meets the border: knots on its prolongation outside
-  inside_body      ///< collapsed, for a body lies all round
+  kInner,          ///< generic cloud
+  kBorder,         ///< knots outside the domain, or along its border
+  kStraight,       ///< on a line that goes straight on: knots on it
+  kFanned,         ///< on a turning line with a body on one side: knots on the outer side
+  kTangent,        ///< on a turning line without a body: knots on the tangent
+  kCorner,         ///< line turns by more than 60 degrees, blunted: as fanned or tangent, smaller
+  kCollapsed,      ///< all knots at the vertex
+  kJunction,       ///< three or more line edges: generic cloud
+  kLineEnd,        ///< a line ends here inside the domain: generic cloud
+  kBorderMeeting,  ///< a line meets the border: knots on its prolongation outside
+  kInsideBody      ///< collapsed, for a body lies all round
 };
 inline constexpr int kNumVertexRules = 11;
 std::string to_string(VertexRule rule);
 
 /// What was decided at one vertex.
 struct VertexPlan {
-  VertexRule rule = VertexRule::inner;
+  VertexRule rule = VertexRule::kInner;
   double radius = 0;        ///< mm, after halving
   double turn_deg = 0;      ///< of the line; 0 off lines
   double chord_offset = 0;  ///< mm, edge length times turn / 8

@@ -262,8 +262,8 @@ bool Arranger::insert_crossings_once() {
     for (int e = 0; e < chains_[c].num_edges(); ++e) {
       edges.push_back({static_cast<int>(c), e});
       const Vector<2> margin = Vector<2>::Constant(tolerance_);
-      lower.push_back(a(edges.back()).cwiseMin(b(edges.back())) - margin);
-      upper.push_back(a(edges.back()).cwiseMax(b(edges.back())) + margin);
+      lower.emplace_back(a(edges.back()).cwiseMin(b(edges.back())) - margin);
+      upper.emplace_back(a(edges.back()).cwiseMax(b(edges.back())) + margin);
     }
   }
   std::vector<Meeting> meetings;

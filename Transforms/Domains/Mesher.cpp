@@ -123,13 +123,13 @@ std::vector<Point<2>> tips_beside_edges(const LineArrangement& arrangement) {
   }
   const std::size_t num_tips = tips.size();
   for (std::size_t i = 0; i < num_tips; ++i) {
-    lower.push_back(tips[i] - Vector<2>::Constant(reach[i]));
-    upper.push_back(tips[i] + Vector<2>::Constant(reach[i]));
+    lower.emplace_back(tips[i] - Vector<2>::Constant(reach[i]));
+    upper.emplace_back(tips[i] + Vector<2>::Constant(reach[i]));
   }
   for (const auto& edge : arrangement.edges) {
     const Point<2>&a = arrangement.vertices[edge.a], &b = arrangement.vertices[edge.b];
-    lower.push_back(a.cwiseMin(b));
-    upper.push_back(a.cwiseMax(b));
+    lower.emplace_back(a.cwiseMin(b));
+    upper.emplace_back(a.cwiseMax(b));
   }
   std::vector<char> keep(num_tips, 1);
   for (const auto& [i, k] : intersecting_boxes(lower, upper)) {

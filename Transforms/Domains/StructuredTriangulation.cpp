@@ -37,8 +37,8 @@ SimplexMesh<2> structured_triangulation(const Box<2>& box, int columns, int rows
     for (int i = 0; i < columns; ++i) {
       const int a = number(i, j), b = number(i + 1, j);
       const int c = number(i + 1, j + 1), d = number(i, j + 1);
-      const bool rising = diagonals == Diagonals::rising ||
-                          (diagonals == Diagonals::union_jack && (i + j) % 2 == 0);
+      const bool rising = diagonals == Diagonals::kRising ||
+                          (diagonals == Diagonals::kUnionJack && (i + j) % 2 == 0);
       if (rising) {
         mesh.simplices.push_back({a, b, c});
         mesh.simplices.push_back({a, c, d});

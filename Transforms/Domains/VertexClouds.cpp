@@ -133,15 +133,15 @@ void VertexClouds::set_border(int vertex, const std::vector<int>& line_edges, Cl
   if (!corner) {
     warnings.push_back(message("parts of the domain touch in the point (", v.x(), ", ", v.y(),
                                ") mm only: its knots were collapsed."));
-    return collapse(sketch, VertexRule::collapsed);
+    return collapse(sketch, VertexRule::kCollapsed);
   }
   const auto& [in, out] = *corner;
   const double turn = turn_angle(in, out);
-  sketch.plan.rule = VertexRule::border;
-  if (options_.border != BorderRule::outside) {
-    const bool straight = options_.border == BorderRule::on_straight_border &&
+  sketch.plan.rule = VertexRule::kBorder;
+  if (options_.border != BorderRule::kOutside) {
+    const bool straight = options_.border == BorderRule::kOnStraightBorder &&
                           std::abs(turn) < kStraightBorder && line_edges.empty();
-    if (!straight) return collapse(sketch, VertexRule::collapsed);
+    if (!straight) return collapse(sketch, VertexRule::kCollapsed);
     const Vector<2> along = (in + out).normalized();
     sketch.pattern = on_two_rays(along, -along, num_distinct_);
     return;
@@ -152,16 +152,16 @@ void VertexClouds::set_border(int vertex, const std::vector<int>& line_edges, Cl
       warnings.push_back(message("a line meets the border at (", v.x(), ", ", v.y(),
                                  ") mm, but its prolongation runs back into the domain: the knots "
                                  "were collapsed."));
-      return collapse(sketch, VertexRule::collapsed);
+      return collapse(sketch, VertexRule::kCollapsed);
     }
-    sketch.plan.rule = VertexRule::border_meeting;
+    sketch.plan.rule = VertexRule::kBorderMeeting;
     sketch.plan.radius *= kJunctionRadius / options_.alpha;
     for (int k = 1; k <= num_distinct_; ++k)
       sketch.pattern.push_back(outwards * (1 - 0.25 * (k - 1)));
     return;
   }
   if (line_edges.size() > 1) {
-    sketch.plan.rule = VertexRule::junction;
+    sketch.plan.rule = VertexRule::kJunction;
     sketch.plan.radius *= kJunctionRadius / options_.alpha;
   }
   const Vector<2> first = turn >= 0 ? Vector<2>(-out) : Vector<2>(-in);
@@ -214,7 +214,7 @@ void VertexClouds::set_passage(int vertex, const Passage& passage, CloudSketch& 
   sketch.plan.turn_deg = std::abs(turn) / kDegree;
   sketch.plan.chord_offset = passage.shorter_edge * std::abs(turn) / 8;
   if (is_corner && passage.corner == CornerRule::kCollapse) {
-    return collapse(sketch, VertexRule::collapsed);
+    return collapse(sketch, VertexRule::kCollapsed);
   }
   const double factor = is_corner      ? options_.fan_corner
                         : passage.body ? options_.fan_body
@@ -223,16 +223,16 @@ void VertexClouds::set_passage(int vertex, const Passage& passage, CloudSketch& 
   if (std::abs(turn) < kStraight || !passage.body) {
     const Vector<2> tangent = (passage.in + passage.out).normalized();
     sketch.pattern = on_two_rays(tangent, -tangent, num_distinct_);
-    sketch.plan.rule = std::abs(turn) < kStraight ? VertexRule::straight : VertexRule::tangent;
+    sketch.plan.rule = std::abs(turn) < kStraight ? VertexRule::kStraight : VertexRule::kTangent;
   } else if (turn > 0) {  // convex: both edges prolonged
     sketch.pattern = on_two_rays(passage.in, -passage.out, num_distinct_);
-    sketch.plan.rule = VertexRule::fanned;
+    sketch.plan.rule = VertexRule::kFanned;
   } else {  // concave: on the edges themselves
     sketch.pattern = on_two_rays(passage.out, -passage.in, num_distinct_);
-    sketch.plan.rule = VertexRule::fanned;
+    sketch.plan.rule = VertexRule::kFanned;
   }
-  if (is_corner) sketch.plan.rule = VertexRule::corner;
-  if (sketch.plan.rule != VertexRule::straight) avoid_mesh_edges(vertex, sketch);
+  if (is_corner) sketch.plan.rule = VertexRule::kCorner;
+  if (sketch.plan.rule != VertexRule::kStraight) avoid_mesh_edges(vertex, sketch);
 }
 
 /// A mesh edge along a line through three knots of its vertex would become a crease too: turn that line
@@ -277,7 +277,7 @@ CloudSketch VertexClouds::sketch(int vertex, std::vector<std::string>& warnings)
   sketch.on_line = !at_vertex.empty();
   sketch.plan.radius = options_.alpha * smallest_inradius(vertex);
   if (options_.collapse_inside_bodies && at_vertex.empty() && inside_one_body(vertex)) {
-    collapse(sketch, VertexRule::inside_body);
+    collapse(sketch, VertexRule::kInsideBody);
   } else if (topology_.on_border(vertex)) {
     set_border(vertex, at_vertex, sketch, warnings);
   } else if (at_vertex.size() == 2) {
@@ -285,9 +285,9 @@ CloudSketch VertexClouds::sketch(int vertex, std::vector<std::string>& warnings)
   } else {
     sketch.generic = true;
     sketch.pattern = generic_pattern(vertex, 0);
-    if (at_vertex.size() == 1) sketch.plan.rule = VertexRule::line_end;
+    if (at_vertex.size() == 1) sketch.plan.rule = VertexRule::kLineEnd;
     if (at_vertex.size() > 2) {
-      sketch.plan.rule = VertexRule::junction;
+      sketch.plan.rule = VertexRule::kJunction;
       sketch.plan.radius *= kJunctionRadius / options_.alpha;
     }
   }

@@ -12,7 +12,7 @@ namespace crease {
 template <int Dim>
 class QuadraticForm {
  public:
-  explicit QuadraticForm(Eigen::SparseMatrix<double> matrix) : matrix_(std::move(matrix)) {}
+  explicit QuadraticForm(const Eigen::SparseMatrix<double>& matrix) : matrix_(matrix) {}
 
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
   /// As Energy::evaluate.

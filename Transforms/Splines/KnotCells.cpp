@@ -73,8 +73,8 @@ std::vector<KnotCells::Segment> KnotCells::segments_in(int triangle,
   for (int t : neighbours_[triangle]) {
     const auto& v = net_.mesh.simplices[t];
     for (int j = 0; j < 3; ++j) {
-      edges.push_back({v[j], v[j]});
-      edges.push_back(std::minmax(v[j], v[(j + 1) % 3]));
+      edges.emplace_back(v[j], v[j]);
+      edges.emplace_back(std::minmax(v[j], v[(j + 1) % 3]));
     }
   }
   std::sort(edges.begin(), edges.end());

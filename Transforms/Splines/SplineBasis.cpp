@@ -10,7 +10,7 @@ template <int Dim>
 Point<Dim> SplineBasis<Dim>::nearest_point(const Point<Dim>& x) const {
   if (contains(x)) return x;
   const Box<Dim> box = bounds();
-  const Point<Dim> clamped = x.cwiseMax(box.lower).cwiseMin(box.upper);
+  Point<Dim> clamped = x.cwiseMax(box.lower).cwiseMin(box.upper);
   if (contains(clamped)) return clamped;
 
   const ControlPoints<Dim> anchors = greville_points();

@@ -23,14 +23,14 @@ class PointSets {
     stars_.resize(mesh.vertices.size());
     std::map<std::pair<int, int>, int> edges;
     for (int t = 0; t < count; ++t) {
-      triangles_.push_back({});
+      triangles_.emplace_back();
       append(t, triangles_.back());
       for (int j = 0; j < 3; ++j) {
         const int a = mesh.simplices[t][j], b = mesh.simplices[t][(j + 1) % 3];
         append(t, stars_[a]);
         const auto [entry, is_new] =
             edges.try_emplace(std::minmax(a, b), static_cast<int>(edges_.size()));
-        if (is_new) edges_.push_back({});
+        if (is_new) edges_.emplace_back();
         append(t, edges_[entry->second]);
         edges_of_.push_back(entry->second);
       }

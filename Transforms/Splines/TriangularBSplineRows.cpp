@@ -263,7 +263,8 @@ class BandBuilder {
   // strips, vary within few samples.
   int sampling_of(const Sample& s) const {
     const double spacing = triangles_[s.owner].control_spacing * (s.core ? 1.0 : kStripFineness);
-    return spacing >= kBlock ? kBlock : spacing >= kBlock / 2 ? kBlock / 2 : 1;
+    constexpr int kHalf = kBlock / 2;
+    return spacing >= kBlock ? kBlock : spacing >= kHalf ? kHalf : 1;
   }
 
   // Each block's basis at the middle samples of its squares of `sampling` samples a side.

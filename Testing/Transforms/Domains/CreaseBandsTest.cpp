@@ -87,7 +87,7 @@ TEST(CreaseBands, BodyRuleKeepsBandsOutOfTheBody) {
       for (int degree : {2, 3, 4}) {
         const auto placed = place_knots(domain, {.degree = degree});
         for (const auto& vertex : placed.plan.vertices) {  // small turns count as straight
-          ASSERT_TRUE(vertex.rule != VertexRule::straight || vertex.turn_deg < 1e-9);
+          ASSERT_TRUE(vertex.rule != VertexRule::kStraight || vertex.turn_deg < 1e-9);
         }
         EXPECT_GT(placed.plan.band_area, 0);
         EXPECT_LT(placed.plan.band_area_in_bodies, 1e-12);
@@ -154,7 +154,7 @@ TEST(CreaseBands, UnionOfOverlappingBandsIsCountedOnce) {
   for (const auto& band : bands.bands()) sum += signed_area(band.hull);
   double shared = 0;  // neighbours overlap in the hull of their common cloud
   for (std::size_t v = 0; v < placed.net.clouds.size(); ++v) {
-    if (placed.plan.vertices[v].rule == VertexRule::fanned) {
+    if (placed.plan.vertices[v].rule == VertexRule::kFanned) {
       shared += signed_area(convex_hull(placed.net.clouds[v]));
     }
   }

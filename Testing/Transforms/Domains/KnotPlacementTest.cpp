@@ -85,12 +85,12 @@ TEST(KnotPlacement, RenumberingVerticesChangesNothing) {
 }
 
 TEST(KnotPlacement, CongruentCloudsOnStructuredMeshes) {
-  for (const auto diagonals : {Diagonals::union_jack, Diagonals::rising, Diagonals::falling}) {
+  for (const auto diagonals : {Diagonals::kUnionJack, Diagonals::kRising, Diagonals::kFalling}) {
     const auto placed = place_knots(square(6, {}, diagonals), {.structured = true});
     EXPECT_NO_THROW(validate(placed.net));
     const auto& reference = placed.net.clouds[vertex_at(placed.net.mesh, {2, 2})];
     for (std::size_t v = 0; v < placed.net.clouds.size(); ++v) {
-      if (placed.plan.vertices[v].rule != VertexRule::inner) continue;
+      if (placed.plan.vertices[v].rule != VertexRule::kInner) continue;
       for (int k = 1; k < 3; ++k) {
         const Vector<2> offset = placed.net.clouds[v][k] - placed.net.clouds[v][0];
         EXPECT_LT((offset - (reference[k] - reference[0])).norm(), 1e-12);
@@ -104,7 +104,7 @@ TEST(KnotPlacement, CongruentCloudsOnStructuredMeshes) {
 
 TEST(KnotPlacement, NoThreeKnotsOfATriangleAreAlmostOnALine) {
   const auto placed =
-      place_knots(square(6, {}, Diagonals::rising), {.degree = 4, .structured = true});
+      place_knots(square(6, {}, Diagonals::kRising), {.degree = 4, .structured = true});
   const auto& net = placed.net;
   for (const auto& s : net.mesh.simplices) {
     std::vector<Point<2>> knots;
@@ -112,7 +112,7 @@ TEST(KnotPlacement, NoThreeKnotsOfATriangleAreAlmostOnALine) {
     for (std::size_t i = 0; i < knots.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         for (std::size_t k = 0; k < j; ++k) {
-          const bool inner = i % 4 > 0 && placed.plan.vertices[s[i / 4]].rule == VertexRule::inner;
+          const bool inner = i % 4 > 0 && placed.plan.vertices[s[i / 4]].rule == VertexRule::kInner;
           if (!inner) continue;
           const double area = std::abs(cross(knots[j] - knots[i], knots[k] - knots[i]));
           const double longest =
@@ -129,8 +129,8 @@ TEST(KnotPlacement, ExperimentOneDiamond) {
   const auto domain = square(6, {closed_line({{5, 3}, {3, 5}, {1, 3}, {3, 1}})});
   const auto placed = place_knots(domain, {.structured = true});
   expect_checked(placed.net);
-  EXPECT_EQ(placed.plan.count(VertexRule::corner), 4);
-  EXPECT_EQ(placed.plan.count(VertexRule::straight), 4);
+  EXPECT_EQ(placed.plan.count(VertexRule::kCorner), 4);
+  EXPECT_EQ(placed.plan.count(VertexRule::kStraight), 4);
   EXPECT_EQ(placed.plan.num_crease_edges, 8);
   EXPECT_LT(placed.plan.band_area_in_bodies, 1e-12);
   for (const auto& edge : placed.net.crease_edges) EXPECT_TRUE(edge.body_side);
@@ -140,12 +140,12 @@ TEST(KnotPlacement, WithoutCreasesLinesAreOrdinaryEdges) {
   const auto domain = square(6, {closed_line({{5, 3}, {3, 5}, {1, 3}, {3, 1}})});
   const auto without = place_knots(domain, {.creases = false});
   EXPECT_TRUE(without.net.crease_edges.empty());
-  EXPECT_EQ(without.plan.count(VertexRule::inner), 25);
+  EXPECT_EQ(without.plan.count(VertexRule::kInner), 25);
   EXPECT_EQ(without.plan.band_area, 0);
 }
 
 TEST(KnotPlacement, RadiiAreHalvedUntilTheTrianglesAreValid) {
-  SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 4), 4, 4, Diagonals::rising);
+  SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 4), 4, 4, Diagonals::kRising);
   mesh.vertices[12] = {2, 2.3};   // bends the line
   mesh.vertices[17] = {2, 2.42};  // a neighbour close above it
   const auto domain = attach_feature_lines(
@@ -159,13 +159,13 @@ TEST(KnotPlacement, RadiiAreHalvedUntilTheTrianglesAreValid) {
 }
 
 TEST(KnotPlacement, HopelessVerticesAreCollapsedWithAWarning) {
-  SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 4), 4, 4, Diagonals::rising);
+  SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 4), 4, 4, Diagonals::kRising);
   mesh.vertices[12] = {2, 2.3};
   mesh.vertices[17] = {2, 2.301};
   const auto domain = attach_feature_lines(
       mesh, {open_line({{0, 2}, {1, 2}, {2, 2.3}, {3, 2}, {4, 2}}, BodySide::kRight)});
   const auto placed = place_knots(domain);
-  EXPECT_EQ(placed.plan.vertices[12].rule, VertexRule::collapsed);
+  EXPECT_EQ(placed.plan.vertices[12].rule, VertexRule::kCollapsed);
   EXPECT_THAT(placed.plan.warnings, Contains(HasSubstr("(2, 2.3) mm were collapsed")));
   EXPECT_NO_THROW(validate(placed.net));
 }

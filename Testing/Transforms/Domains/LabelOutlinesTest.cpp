@@ -156,7 +156,7 @@ TEST(LabelOutlines, BodiesAtTheImageBorderGoOnOutsideAndAreCutByTheMesher) {
     const auto domain = mesh_domain(rectangle_of(raster), outlines.lines,
                                     {.edge_length = 12, .edge_length_near_lines = 5});
     EXPECT_NEAR(testing::region_area(domain.mesh, 1), inside, 0.02 * inside);
-    EXPECT_EQ(place_knots(domain).plan.count(VertexRule::border_meeting), 2);
+    EXPECT_EQ(place_knots(domain).plan.count(VertexRule::kBorderMeeting), 2);
     EXPECT_TRUE(domain.warnings.empty());
   }
 }

@@ -50,15 +50,15 @@ TEST(LineArrangement, CrossingsBecomeJunctions) {
       mesh_domain(rectangle(0, 0, 100, 100),
                   {open_line({{20, 50}, {80, 50}}), open_line({{45, 20}, {55, 80}})}, kOptions);
   EXPECT_TRUE(has_vertex(domain, {50, 50}, 2.1));
-  EXPECT_EQ(count(domain, VertexRule::junction), 1);
-  EXPECT_EQ(count(domain, VertexRule::line_end), 4);
+  EXPECT_EQ(count(domain, VertexRule::kJunction), 1);
+  EXPECT_EQ(count(domain, VertexRule::kLineEnd), 4);
 }
 
 TEST(LineArrangement, LineThatCrossesItselfGetsAJunction) {
   const auto domain = mesh_domain(rectangle(0, 0, 100, 100),
                                   {open_line({{20, 30}, {80, 70}, {80, 30}, {20, 70}})}, kOptions);
   EXPECT_TRUE(has_vertex(domain, {50, 50}, 2.1));
-  EXPECT_EQ(count(domain, VertexRule::junction), 1);
+  EXPECT_EQ(count(domain, VertexRule::kJunction), 1);
 }
 
 TEST(LineArrangement, LinesAreClippedWithAWarning) {
@@ -67,7 +67,7 @@ TEST(LineArrangement, LinesAreClippedWithAWarning) {
   EXPECT_THAT(domain.warnings, Contains(HasSubstr("50 % of it is outside")));
   EXPECT_NEAR(chain_length(domain), 100, 1e-9);
   EXPECT_TRUE(has_vertex(domain, {0, 40}));
-  EXPECT_EQ(count(domain, VertexRule::border_meeting), 2);
+  EXPECT_EQ(count(domain, VertexRule::kBorderMeeting), 2);
 }
 
 TEST(LineArrangement, LinesOutsideAreRefused) {
@@ -91,7 +91,7 @@ TEST(LineArrangement, ClosedLineOverTheBorderBecomesOpenAndKeepsItsRegion) {
     inside += 0.5 * (a.x() + b.x()) * (b.y() - a.y());
   }
   EXPECT_NEAR(testing::region_area(domain.mesh, 1), inside, 0.02 * inside);
-  EXPECT_EQ(count(domain, VertexRule::border_meeting), 2);
+  EXPECT_EQ(count(domain, VertexRule::kBorderMeeting), 2);
 }
 
 TEST(LineArrangement, EndsThatAlmostReachTheBorderOrALineAreJoined) {
@@ -99,9 +99,9 @@ TEST(LineArrangement, EndsThatAlmostReachTheBorderOrALineAreJoined) {
       rectangle(0, 0, 100, 100),
       {open_line({{1.2, 50}, {60, 50}}), open_line({{60.9, 20}, {60.9, 80}})}, kOptions);
   EXPECT_THAT(domain.notes, Contains(HasSubstr("merged with it")));
-  EXPECT_EQ(count(domain, VertexRule::border_meeting), 1);
-  EXPECT_EQ(count(domain, VertexRule::junction), 1);
-  EXPECT_EQ(count(domain, VertexRule::line_end), 2);
+  EXPECT_EQ(count(domain, VertexRule::kBorderMeeting), 1);
+  EXPECT_EQ(count(domain, VertexRule::kJunction), 1);
+  EXPECT_EQ(count(domain, VertexRule::kLineEnd), 2);
 }
 
 TEST(LineArrangement, PointsNearerThanAQuarterEdgeAreMerged) {
@@ -128,14 +128,14 @@ TEST(LineArrangement, NeighboursThatShareAStretchHaveNoBodySideThere) {
   }
   EXPECT_NEAR(without_side, 40, 1e-9);
   EXPECT_NEAR(chain_length(domain), 160 + 160 - 40, 1e-9);  // the shared stretch once
-  EXPECT_EQ(count(domain, VertexRule::junction), 2);
+  EXPECT_EQ(count(domain, VertexRule::kJunction), 2);
 }
 
 TEST(LineArrangement, LinesAlongTheBorderAreLeftOut) {
   const auto domain = mesh_domain(rectangle(0, 0, 100, 100),
                                   {open_line({{30, 40}, {30, 0}, {70, 0}, {70, 40}})}, kOptions);
   EXPECT_NEAR(chain_length(domain), 80, 1e-9);
-  EXPECT_EQ(count(domain, VertexRule::border_meeting), 2);
+  EXPECT_EQ(count(domain, VertexRule::kBorderMeeting), 2);
 }
 
 TEST(LineArrangement, PixelStairsAreWarnedOf) {
@@ -164,7 +164,7 @@ TEST(LineArrangement, TouchingLabelOutlinesMeetInJunctions) {
   const auto domain = mesh_domain(rectangle(0, 0, 100, 100), {a, b, shared}, kOptions);
   EXPECT_NEAR(testing::region_area(domain.mesh, 1), 900, 1e-9);
   EXPECT_NEAR(testing::region_area(domain.mesh, 2), 900, 1e-9);
-  EXPECT_EQ(count(domain, VertexRule::junction), 2);
+  EXPECT_EQ(count(domain, VertexRule::kJunction), 2);
 }
 
 TEST(LineArrangement, ManyRandomLinesAreDisentangled) {

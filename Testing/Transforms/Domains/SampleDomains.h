@@ -114,7 +114,7 @@ inline double region_area(const SimplexMesh<2>& mesh, int region) {
 
 /// A line across [0,4] x [0,2] along the middle of a structured mesh, its middle vertex raised.
 inline DomainMesh bent_line(double height, BodySide body = BodySide::kNone) {
-  SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 2), 4, 2, Diagonals::rising);
+  SimplexMesh<2> mesh = structured_triangulation(box(0, 0, 4, 2), 4, 2, Diagonals::kRising);
   mesh.vertices[7] = Point<2>(2, 1 + height);
   return attach_feature_lines(mesh,
                               {open_line({{0, 1}, {1, 1}, {2, 1 + height}, {3, 1}, {4, 1}}, body)});
@@ -122,7 +122,7 @@ inline DomainMesh bent_line(double height, BodySide body = BodySide::kNone) {
 
 /// [0, cells]^2 in unit cells, with lines along its edges.
 inline DomainMesh square(int cells, const std::vector<FeatureLine>& lines,
-                         Diagonals diagonals = Diagonals::union_jack) {
+                         Diagonals diagonals = Diagonals::kUnionJack) {
   const double side = cells;
   return attach_feature_lines(
       structured_triangulation(box(0, 0, side, side), cells, cells, diagonals), lines);

@@ -31,13 +31,13 @@ TEST(StructuredTriangulation, UnionJackDiagonalsPassEvenVertices) {
 }
 
 TEST(StructuredTriangulation, OneDiagonalDirection) {
-  for (const auto diagonals : {Diagonals::rising, Diagonals::falling}) {
+  for (const auto diagonals : {Diagonals::kRising, Diagonals::kFalling}) {
     const auto mesh = structured_triangulation(testing::box(0, 0, 3, 1), 3, 2, diagonals);
     const MeshTopology topology(mesh);
     for (const auto& edge : topology.edges()) {
       const Vector<2> d = mesh.vertices[edge.vertices[1]] - mesh.vertices[edge.vertices[0]];
       if (d.x() == 0 || d.y() == 0) continue;
-      EXPECT_EQ(d.x() * d.y() > 0, diagonals == Diagonals::rising);
+      EXPECT_EQ(d.x() * d.y() > 0, diagonals == Diagonals::kRising);
     }
     EXPECT_NEAR(mesh_figures(mesh).area, 3, 1e-13);
   }

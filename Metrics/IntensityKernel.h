@@ -1,0 +1,38 @@
+#pragma once
+
+namespace crease {
+
+/// Derivatives of one row by the moving intensities, to be carried to the mapped points by the gradients of
+/// the moving image and its mask. All arrays are readable from begin - begin % 4 to end rounded up to 4;
+/// slopes and curvatures are 0 outside [begin, end).
+struct SlopeRow {
+  int begin = 0;
+  int end = 0;
+  const float* slope = nullptr;       ///< dE / dI_m
+  const float* curvature = nullptr;   ///< d2E / dI_m2, >= 0
+  const float* gradient[3] = {};      ///< of I_m
+  const float* mask_slope = nullptr;  ///< dE / dm; null: no mask
+  const float* mask_gradient[3] = {};
+  float* force[3] = {};
+  float* curvature_sum[6] = {};  ///< null: not wanted; entry i / 4 for sample i, added to
+};
+
+/// Weighted sums of one row: w, w a, w b, w a a, w b b, w a b.
+struct ProductSums {
+  double values[6] = {};
+};
+
+using SlopeRowKernel = void(const SlopeRow& row, int dim);
+using ProductSumsKernel = ProductSums(const float* weight, const float* a, const float* b,
+                                      int count);
+
+namespace baseline {
+SlopeRowKernel carry_slopes;
+ProductSumsKernel product_sums;
+}  // namespace baseline
+namespace avx2 {
+SlopeRowKernel carry_slopes;
+ProductSumsKernel product_sums;
+}  // namespace avx2
+
+}  // namespace crease

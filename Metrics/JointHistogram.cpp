@@ -1,0 +1,89 @@
+#include "Metrics/JointHistogram.h"
+
+#include <numeric>
+
+namespace crease {
+namespace {
+
+double entropy(const std::vector<double>& probabilities) {
+  double sum = 0;
+  for (double p : probabilities) {
+    if (p > 0) sum -= p * std::log(p);
+  }
+  return sum;
+}
+
+/// Mean square of the slope of ln p along a row, where both neighbours are known.
+double fisher_information(const double* row, int bins) {
+  double sum = 0, weight = 0;
+  for (int l = 1; l + 1 < bins; ++l) {
+    if (!(row[l - 1] > 0) || !(row[l + 1] > 0)) continue;
+    const double slope = 0.5 * std::log(row[l + 1] / row[l - 1]);
+    sum += row[l] * slope * slope;
+    weight += row[l];
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+}  // namespace
+
+JointHistogram::JointHistogram(int bins)
+    : bins_(bins), values_(static_cast<std::size_t>(bins) * bins, 0.0) {}
+
+JointHistogram& JointHistogram::operator+=(const JointHistogram& other) {
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
+  return *this;
+}
+
+double JointHistogram::normalise() {
+  const double sum = std::accumulate(values_.begin(), values_.end(), 0.0);
+  if (sum > 0) {
+    for (double& v : values_) v /= sum;
+  }
+  return sum;
+}
+
+std::vector<double> JointHistogram::fixed_marginal() const {
+  std::vector<double> sums(static_cast<std::size_t>(bins_), 0.0);
+  for (int k = 0; k < bins_; ++k) {
+    sums[k] = std::accumulate(row(k), row(k) + bins_, 0.0);
+  }
+  return sums;
+}
+
+std::vector<double> JointHistogram::moving_marginal() const {
+  std::vector<double> sums(static_cast<std::size_t>(bins_), 0.0);
+  for (int k = 0; k < bins_; ++k) {
+    for (int l = 0; l < bins_; ++l) sums[l] += row(k)[l];
+  }
+  return sums;
+}
+
+JointHistogram::Information JointHistogram::information(InformationKind kind) const {
+  const auto of_fixed = fixed_marginal(), of_moving = moving_marginal();
+  Information result;
+  const double joint = entropy(values_);
+  const double marginals = entropy(of_fixed) + entropy(of_moving);
+  const bool mutual = kind == InformationKind::kMutual;
+  const double ratio = joint > 0 ? marginals / joint : 2;
+  result.value = mutual ? marginals - joint : ratio;
+  // d(H_f + H_m) = -sum dp (ln p_f + ln p_m), dH_fm = -sum dp ln p, up to constants times sum dp.
+  const double by_marginals = mutual || !(joint > 0) ? 1 : 1 / joint;
+  const double by_joint = mutual || !(joint > 0) ? 1 : ratio / joint;
+  result.slope.assign(values_.size(), 0.0);
+  result.curvature.assign(static_cast<std::size_t>(bins_), 0.0);
+  for (int k = 0; k < bins_; ++k) {
+    for (int l = 0; l < bins_; ++l) {
+      const double p = row(k)[l];
+      if (!(p > 0)) continue;
+      const double slope =
+          by_joint * std::log(p) - by_marginals * (std::log(of_fixed[k]) + std::log(of_moving[l]));
+      result.slope[static_cast<std::size_t>(k) * bins_ + l] = slope;
+      result.mean_slope += p * slope;
+    }
+    result.curvature[k] = by_joint * fisher_information(row(k), bins_);
+  }
+  return result;
+}
+
+}  // namespace crease

@@ -40,6 +40,7 @@ struct RegisterOptions {
   bool is_triangular() const { return transform == "triangular-bspline"; }
   bool is_spline() const { return is_triangular() || transform == "bspline"; }
   bool has_metric() const { return metric != "none"; }
+  bool expects_equal_intensities() const { return metric == "ssd" || !has_metric(); }
   int spline_degree() const { return degree.value_or(3); }
   int spline_smoothness() const { return smoothness.value_or(spline_degree() - 1); }
   /// Weights as they hold: alpha of the metric, beta of rigidity, 0 where a term is absent.

@@ -125,8 +125,10 @@ void write_results(const OutputFolder& output, const RegisterOptions& options,
 }
 
 template <int Dim>
-void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
-                    const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images) {
+void write_pictures(const OutputFolder& output, const RegisterOptions& options,
+                    const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
+                    const RegisterImages<Dim>& images) {
+  const bool one_window = options.expects_equal_intensities();
   const Image<float, Dim>& fixed = input.fixed.image;
   const PointMap<Dim> stay = [](const Point<Dim>& x) { return x; };
   const Image<float, Dim> before =
@@ -147,7 +149,7 @@ void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
       {"fixed", [&] { return image_picture(fixed, "fixed"); }},
       {"moving", [&] { return image_picture(input.moving.image, "moving"); }},
       {"warped", [&] { return image_picture(images.warped, "moving, warped to the fixed image"); }},
-      {"checkerboard", [&] { return checkerboard_picture(fixed, images.warped); }},
+      {"checkerboard", [&] { return checkerboard_picture(fixed, images.warped, one_window); }},
       {"difference", [&] { return difference_picture(fixed, before, images.warped); }},
       {"jacobian", [&] { return jacobian_picture(images.determinants); }},
       {"grid", [&] { return deformation_picture(input.moving.image, drawing); }},
@@ -168,8 +170,9 @@ void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
   template void write_results<Dim>(const OutputFolder&, const RegisterOptions&,                    \
                                    const RegisterInput<Dim>&, const RegisterOutcome<Dim>&,         \
                                    const RegisterImages<Dim>&);                                    \
-  template void write_pictures<Dim>(const OutputFolder&, const RegisterInput<Dim>&,                \
-                                    const RegisterOutcome<Dim>&, const RegisterImages<Dim>&);
+  template void write_pictures<Dim>(const OutputFolder&, const RegisterOptions&,                   \
+                                    const RegisterInput<Dim>&, const RegisterOutcome<Dim>&,        \
+                                    const RegisterImages<Dim>&);
 CREASE_INSTANTIATE(2)
 CREASE_INSTANTIATE(3)
 #undef CREASE_INSTANTIATE

@@ -32,7 +32,8 @@ void write_results(const OutputFolder& output, const RegisterOptions& options,
 
 /// pictures/*.png for people.
 template <int Dim>
-void write_pictures(const OutputFolder& output, const RegisterInput<Dim>& input,
-                    const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images);
+void write_pictures(const OutputFolder& output, const RegisterOptions& options,
+                    const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
+                    const RegisterImages<Dim>& images);
 
 }  // namespace crease

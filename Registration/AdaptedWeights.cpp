@@ -14,8 +14,7 @@ constexpr double kLeastBending = 1e-6;  // times the square of the mean edge
 constexpr double kMostBending = 1e-1;   // likewise
 constexpr double kLeastNoise = 1e-6;    // beside which soft landmarks are weighed
 constexpr double kMostFall = 32;        // of the weight of bending at once
-constexpr double kMostRise =
-    4;  // less: a level that shows no motion must not keep the next from moving
+constexpr double kMostRise = 4;
 
 template <int Dim>
 WeightedEnergy<Dim>* find(std::vector<WeightedEnergy<Dim>>& energies, std::string_view name) {
@@ -52,7 +51,10 @@ bool AdaptedWeights<Dim>::balance(const BendingBalance& found, bool finest,
   if (bending == nullptr || stiffened_ > 0 || balanced_ == kMostBalancings) return false;
   ++balanced_;
   const double change = found.weight() / bending->weight;
-  const double wanted = bending->weight * std::clamp(change, 1 / kMostFall, kMostRise);
+  // A coarse level that shows little motion must not keep the finer ones from moving, least where the metric
+  // tells noise from misfit by itself and would not find the way back.
+  const double most_rise = finest || !found.noise_power ? kMostRise : 1.0;
+  const double wanted = bending->weight * std::clamp(change, 1 / kMostFall, most_rise);
   const double unit = std::pow(edge_length_, 2);
   bool changed =
       set_weight(*bending, std::clamp(wanted, kLeastBending * unit, kMostBending * unit), finest);

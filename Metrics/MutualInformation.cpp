@@ -155,7 +155,7 @@ void MutualInformation<Dim>::differentiate(const Samples& row, const Slopes& out
       const int k = fixed.first + n;
       const float* table = &slope_[static_cast<std::size_t>(k) * options_.bins + moving.first];
       slope += fixed.value[n] * taps(moving.slope, table);
-      value += fixed.value[n] * taps(moving.value, table);
+      if (out.by_weight != nullptr) value += fixed.value[n] * taps(moving.value, table);
       curvature += fixed.value[n] * curvature_[k];
     }
     out.by_moving[i] =

@@ -33,15 +33,16 @@ class IntensityBins {
 /// by the position.
 struct CubicWindow {
   explicit CubicWindow(double position) : first(static_cast<int>(position) - 1) {
+    constexpr double kSixth = 1.0 / 6;
     const double t = position - (first + 1), s = 1 - t;
-    value[0] = s * s * s / 6;
-    value[1] = 2.0 / 3 - t * t + t * t * t / 2;
-    value[2] = 2.0 / 3 - s * s + s * s * s / 2;
-    value[3] = t * t * t / 6;
-    slope[0] = -s * s / 2;
+    value[0] = s * s * s * kSixth;
+    value[1] = 2.0 / 3 - t * t + 0.5 * t * t * t;
+    value[2] = 2.0 / 3 - s * s + 0.5 * s * s * s;
+    value[3] = t * t * t * kSixth;
+    slope[0] = -0.5 * s * s;
     slope[1] = -2 * t + 1.5 * t * t;
     slope[2] = 2 * s - 1.5 * s * s;
-    slope[3] = t * t / 2;
+    slope[3] = 0.5 * t * t;
   }
   int first;
   double value[4], slope[4];

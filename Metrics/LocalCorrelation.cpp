@@ -213,10 +213,12 @@ double LocalCorrelation<Dim>::reference(Reference& all) const {
     total += {w * windows.back().correlation.value, w};
   }
   const double mean = total.value / total.weight;
-  for (const auto& [centre, c] : windows) {
-    const double share = all.weight[static_cast<std::size_t>(centre)] / total.weight;
-    all.by_weight[static_cast<std::size_t>(centre)] += (c.value - mean) / total.weight;
-    visit(centre, [&](std::size_t at, double a, double b) {
+  for (const Window& window : windows) {
+    const Correlation& c = window.correlation;
+    const auto centre = static_cast<std::size_t>(window.centre);
+    const double share = all.weight[centre] / total.weight;
+    all.by_weight[centre] += (c.value - mean) / total.weight;
+    visit(window.centre, [&](std::size_t at, double a, double b) {
       all.by_moving[at] +=
           share * all.weight[at] * (c.by_a * (a - c.mean_a) + c.by_b * (b - c.mean_b));
       all.by_weight[at] += share * c.weight_slope(a, b);

@@ -18,7 +18,7 @@ struct HistogramSums final : Metric<Dim>::Sums {
 struct FixedShares {
   FixedShares(double position, FixedWindow window) {
     if (window == FixedWindow::kBox) {
-      first = static_cast<int>(position + 0.5);
+      first = static_cast<int>(position + 0.5);  // NOLINT(bugprone-incorrect-roundings): above 0
       count = 1;
       value[0] = 1;
     } else {

@@ -1,6 +1,5 @@
 #include "Applications/RegisterRun.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "Images/IntensityRange.h"

@@ -20,8 +20,7 @@ struct RegisterOutcome {
   std::shared_ptr<const Transform<Dim>> transform;
   std::optional<CreasedDomain> domain;  ///< of a triangular B-spline
   Alignment<Dim> alignment;
-  double metric_before =
-      0;  ///< at the start; half the integral of squares, mm^Dim, normalised intensities
+  double metric_before = 0;  ///< at the start; squares are of normalised intensities
   double metric_after = 0;
   std::map<std::string, double> energies;  ///< unweighted
   std::map<std::string, double> weights;   ///< of these

@@ -3,7 +3,6 @@
 #include <numeric>
 
 namespace crease {
-namespace {
 
 double entropy(const std::vector<double>& probabilities) {
   double sum = 0;
@@ -12,6 +11,8 @@ double entropy(const std::vector<double>& probabilities) {
   }
   return sum;
 }
+
+namespace {
 
 /// Mean square of the slope of ln p along a row, where both neighbours are known.
 double fisher_information(const double* row, int bins) {

@@ -6,6 +6,9 @@
 
 namespace crease {
 
+/// -sum p ln p.
+double entropy(const std::vector<double>& probabilities);
+
 /// How a joint histogram is turned into a number.
 enum class InformationKind {
   kMutual,     ///< sum p ln (p / (p_f p_m))

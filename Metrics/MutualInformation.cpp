@@ -100,11 +100,7 @@ double MutualInformation<Dim>::fixed_entropy() const {
     }
   }
   histogram.normalise();
-  double entropy = 0;
-  for (double p : histogram.fixed_marginal()) {
-    if (p > 0) entropy -= p * std::log(p);
-  }
-  return std::max(entropy, 1e-3);
+  return std::max(entropy(histogram.fixed_marginal()), 1e-3);
 }
 
 template <int Dim>

@@ -21,7 +21,7 @@ struct BendingBalance {
   /// it is correlated, and n the number of parameters that the images determine. Rough motions and clean
   /// images ask for little bending, smooth motions and noisy images for much. Half as much again is taken:
   /// motions of tissue are smoother than random ones of the same energy.
-  /// Source: D. J. C. MacKay, "Bayesian Interpolation", Neural Computation 4, 1992, (4.9).
+  /// Source: D. J. C. MacKay, "Bayesian Interpolation", Neural Computation 4, 1992.
   double weight() const;
   /// s, mm^Dim: what 1/2 r^2 per sample stands for in 1/2 int r^2 when it is noise.
   double noise_density() const;

@@ -12,8 +12,8 @@ namespace crease {
 ///
 /// The trace is the mean of z^T (J + P)^-1 J z over a few vectors of random signs, always the same ones;
 /// its relative error is about (2 / (probes x trace))^1/2.
-/// Sources: D. J. C. MacKay, "Bayesian Interpolation", Neural Computation 4, 1992, (4.10), for gamma, the
-/// number of well-determined parameters; M. F. Hutchinson, "A stochastic estimator of the trace",
+/// Sources: D. J. C. MacKay, "Bayesian Interpolation", Neural Computation 4, 1992, for the number of
+/// well-determined parameters; M. F. Hutchinson, "A stochastic estimator of the trace",
 /// Communications in Statistics 18, 1989, for the estimate.
 /// @param image   alpha E_I alone; `whole` the whole cost; both are evaluated at `phi`.
 /// @param solver  of whole's matrix; may keep a factor of an earlier one, and keeps this one's.

@@ -21,12 +21,14 @@ inline double slope_error(const std::function<double(double)>& f, double slope, 
 inline void expect_slope(const std::function<double(double)>& f, double slope,
                          const std::string& what, double first_step = 1e-2) {
   double previous = std::numeric_limits<double>::quiet_NaN();
-  for (double step = first_step; step > 0.5e-5; step /= 10) {
+  double step = first_step;
+  while (step > 0.5e-5) {
     const double error = slope_error(f, slope, step);
     // A twentieth less than a hundredfold: derivatives of higher order.
     if (previous > 1e-7)
       EXPECT_LT(error, std::max(1e-7, previous / 95)) << what << ", step " << step;
     previous = error;
+    step /= 10;
   }
   EXPECT_LT(slope_error(f, slope, 1e-5), 1e-6) << what;
 }

@@ -239,7 +239,7 @@ TEST_F(RegisterBadInput, FoldingIsAWarningOrAFailedGate) {
   EXPECT_LE(result["jacobian"]["min"].get<double>(), 0);
   EXPECT_THAT(result["warnings"].dump(), AllOf(HasSubstr("folds at"), HasSubstr("near (")));
   auto gate = extra;
-  gate.push_back("--require-invertible");
+  gate.emplace_back("--require-invertible");
   EXPECT_EQ(run(gate).code, 1);
   result = testing::read_result(output());
   EXPECT_EQ(result["status"], "gate_failed");

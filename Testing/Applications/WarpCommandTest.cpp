@@ -159,7 +159,7 @@ TEST_F(WarpCommand, InverseImageOfAWarpedImageIsTheImage) {
     std::vector<std::string> arguments = {
         "warp",        "--transform",     file("spline.json"), "--moving",   file(moving),
         "--reference", file("image.mha"), "--output-image",    file(output), "--quiet"};
-    if (inverse) arguments.push_back("--inverse");
+    if (inverse) arguments.emplace_back("--inverse");
     const auto run = run_crease(arguments);
     EXPECT_EQ(run.code, 0) << run.err;
   };

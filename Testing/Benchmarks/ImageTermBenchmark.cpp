@@ -83,7 +83,7 @@ BENCHMARK(BM_Ssd)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
 
 /// Fourth argument: 0 value; 1 value, force and adjoint: the gradient; 2 and the Gauss-Newton matrix.
 void fused(benchmark::State& state, const SplineBasis<2>& basis,
-           std::shared_ptr<Metric<2>> metric) {
+           const std::shared_ptr<Metric<2>>& metric) {
   const Threads threads(static_cast<int>(state.range(2)));
   const Raster<2> raster = metric->fixed_raster();
   ImageTerm<2> term(basis.bind(raster), metric, {});

@@ -91,6 +91,11 @@ int finish(const Json& figures, const std::vector<Threshold>& thresholds) {
   return missed == 0 ? 0 : 1;
 }
 
+int give_up(const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
+
 std::filesystem::path output_folder(int argc, char** argv, const std::string& fallback) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : fallback;
   std::filesystem::create_directories(folder);

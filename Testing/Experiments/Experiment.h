@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -44,6 +45,9 @@ struct Threshold {
 
 /// Prints the JSON line and the thresholds that are missed (on stderr). Returns the exit code.
 int finish(const Json& figures, const std::vector<Threshold>& thresholds);
+
+/// Says what went wrong (on stderr). Returns the exit code.
+int give_up(const std::exception& error);
 
 /// The output folder of the command line (created), or the default beside the program.
 std::filesystem::path output_folder(int argc, char** argv, const std::string& fallback);

@@ -11,7 +11,7 @@ using namespace crease::experiments;
 
 constexpr int kCells = 6;
 
-struct Outcome {
+struct Outcome {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
   Json figures;
   double rigidity = 0, bending = 0, smallest_determinant = 0, landmark_error = 0, body_rms = 0;
 };
@@ -51,7 +51,7 @@ Outcome run(const Phantom& phantom, bool creases, const std::filesystem::path& f
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   const auto folder = output_folder(argc, argv, "rotated-square-output");
   const Phantom phantom = make_phantom("square", {.size = 400});
   const Outcome without = run(phantom, false, folder);
@@ -69,4 +69,6 @@ int main(int argc, char** argv) {
                  {"landmark error with creases (mm)", with.landmark_error, 1e-9 * size},
                  {"landmark error without creases (mm)", without.landmark_error, 1e-9 * size},
                  {"distance of the body from the rotation", with.body_rms, 0.02}});
+} catch (const std::exception& error) {
+  return give_up(error);
 }

@@ -10,7 +10,7 @@ namespace {
 using namespace crease;
 using namespace crease::experiments;
 
-struct Outcome {
+struct Outcome {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
   Json figures;
   double worst_angle = 0, worst_shift = 0, rigidity_per_area = 0, ssd_left = 0;
   double smallest_determinant = 0, landmark_error = 0;
@@ -65,7 +65,7 @@ Outcome run(const Phantom& phantom, const CreasedDomain& domain, const LandmarkO
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   const auto folder = output_folder(argc, argv, "spine-output");
   const Phantom exact = make_phantom("spine", {});
   const Phantom noisy = make_phantom("spine", {.landmark_noise_mm = 1});
@@ -89,4 +89,6 @@ int main(int argc, char** argv) {
     thresholds.push_back({"SSD left" + with, outcome->ssd_left, 0.1});
   }
   return finish(figures, thresholds);
+} catch (const std::exception& error) {
+  return give_up(error);
 }

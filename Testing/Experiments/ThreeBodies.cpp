@@ -15,7 +15,7 @@ using namespace crease::experiments;
 constexpr int kCells = 8;
 constexpr int kSize = 100;  // pixels
 
-struct Outcome {
+struct Outcome {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
   Json figures;
   double image_ratio = 0, rigidity = 0, bending = 0, worst_body = 0, smallest_determinant = 0;
   double landmark_error = 0;
@@ -87,7 +87,7 @@ std::shared_ptr<const SplineBasis<2>> tensor_basis(const Phantom& phantom) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   const auto folder = output_folder(argc, argv, "three-bodies-output");
   const Phantom phantom = make_phantom("bodies", {.size = kSize, .texture = false});
   const Outcome tensor = run(phantom, tensor_basis(phantom), "tensor", folder);
@@ -113,4 +113,6 @@ int main(int argc, char** argv) {
                  {"E_I over unregistered, no creases", smooth.image_ratio, 0.003},
                  {"E_I over unregistered, creases", creased.image_ratio, 0.001},
                  {"landmark error (mm)", creased.landmark_error, 1e-9 * size}});
+} catch (const std::exception& error) {
+  return give_up(error);
 }

@@ -57,7 +57,7 @@ TEST(SurfaceTopology, HolesAndParts) {
 
 TEST(SurfaceTopology, EdgesWithThreeFacesHaveNoGenus) {
   SurfaceMesh mesh = tetrahedron();
-  mesh.vertices.push_back({1, 1, 1});
+  mesh.vertices.emplace_back(1, 1, 1);
   mesh.faces.push_back({0, 1, 4});
   EXPECT_EQ(surface_topology(mesh).non_manifold_edges, 1);
   EXPECT_EQ(surface_topology(mesh).genus, -1);

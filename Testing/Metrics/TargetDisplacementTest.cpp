@@ -22,7 +22,7 @@ TEST(TargetDisplacement, RowsAgreeWithTheReferenceAndItsForceIsTheMiss) {
   std::array<std::vector<float>, 6> curvature;
   for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
     for (int i = 0; i < 9; ++i) {
-      mapped.push_back(raster.row_start(r) + i * raster.index_to_point().col(0));
+      mapped.emplace_back(raster.row_start(r) + i * raster.index_to_point().col(0));
     }
     MappedRow<3> row;
     row.row = r;

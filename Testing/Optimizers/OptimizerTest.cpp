@@ -21,10 +21,10 @@ struct Method {
   std::function<std::unique_ptr<Optimizer>(const OptimizerOptions&)> make;
 };
 
-template <LinearSolver kSolver>
+template <LinearSolver Solver>
 std::unique_ptr<Optimizer> gauss_newton(const OptimizerOptions& stopping) {
   return std::make_unique<GaussNewton>(stopping,
-                                       GaussNewtonOptions{.linear_solver = {.kind = kSolver}});
+                                       GaussNewtonOptions{.linear_solver = {.kind = Solver}});
 }
 
 const Method kMethods[] = {

@@ -70,7 +70,7 @@ TEST(LandmarkConstraints, RowsSumToOneOnKnotLines) {
   std::vector<Point<2>> places = mesh.vertices;
   for (const auto& s : mesh.simplices) {
     for (double share : {0.1, 0.5}) {
-      places.push_back((1 - share) * mesh.vertices[s[0]] + share * mesh.vertices[s[1]]);
+      places.emplace_back((1 - share) * mesh.vertices[s[0]] + share * mesh.vertices[s[1]]);
     }
   }
   for (const auto& cloud : domain.basis->net().clouds) {
@@ -139,8 +139,8 @@ TEST(LandmarkConstraints, ACubicCoreHoldsTenLandmarks) {
   Landmarks<2> landmarks;
   for (int j = 0; j < 12; ++j) {
     const double angle = 2.4 * j;  // spread by the golden angle
-    landmarks.fixed.push_back(middle +
-                              std::sqrt(j + 0.5) * Vector<2>(std::cos(angle), std::sin(angle)));
+    landmarks.fixed.emplace_back(middle +
+                                 std::sqrt(j + 0.5) * Vector<2>(std::cos(angle), std::sin(angle)));
     ASSERT_TRUE(basis->in_core(kTriangle, landmarks.fixed.back()));
     landmarks.moving.push_back(affine(landmarks.fixed.back()));
   }
@@ -158,7 +158,7 @@ TEST(LandmarkConstraints, ContradictionsAreRefusedOrCompromised) {
     const int column = j % 5, row = j / 5;
     const Point<2> p(41 + 3.1 * column, 42 + 4.3 * row);
     landmarks.fixed.push_back(p);
-    landmarks.moving.push_back(p + Vector<2>(std::sin(5.0 * j), std::cos(7.0 * j)));
+    landmarks.moving.emplace_back(p + Vector<2>(std::sin(5.0 * j), std::cos(7.0 * j)));
   }
   EXPECT_THAT(
       [&] {

@@ -26,9 +26,9 @@ Landmarks<2> random_landmarks(int count, const Point<2>& centre, double radius) 
   while (landmarks.size() < count) {
     const Vector<2> offset(uniform(generator), uniform(generator));
     if (offset.norm() > 1) continue;
-    landmarks.fixed.push_back(centre + radius * offset);
-    landmarks.moving.push_back(landmarks.fixed.back() +
-                               Vector<2>(uniform(generator), uniform(generator)));
+    landmarks.fixed.emplace_back(centre + radius * offset);
+    landmarks.moving.emplace_back(landmarks.fixed.back() +
+                                  Vector<2>(uniform(generator), uniform(generator)));
   }
   return landmarks;
 }

@@ -197,10 +197,14 @@ TYPED_TEST(BoundGridSuite, CurvatureIsTheSumOverBlocks) {
         Vector<kDim> index;
         index[0] = i;
         index[1] = static_cast<double>(kDim == 2 ? row : row % this->raster.size[1]);
-        if constexpr (kDim == 3) index[2] = static_cast<double>(row / this->raster.size[1]);
+        if constexpr (kDim == 3) {
+          const std::int64_t plane = row / this->raster.size[1];
+          index[2] = static_cast<double>(plane);
+        }
         if ((index.array() < low.array()).any() || (index.array() >= high.array()).any()) continue;
         const Point<kDim> x = this->raster.point(index);
-        const double d = (index - low - Vector<kDim>::Constant(kBlock / 2)).norm();
+        constexpr int kMiddle = kBlock / 2;
+        const double d = (index - low - Vector<kDim>::Constant(kMiddle)).norm();
         if (d < distance && this->basis->contains(x)) {
           distance = d;
           best = x;

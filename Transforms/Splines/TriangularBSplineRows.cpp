@@ -105,7 +105,7 @@ class BandBuilder {
       const std::size_t before = pending_.size();
       for (int r = 0; r < num_rows_; ++r) {
         for (int i = begin; i < end; ++i) {
-          if (sample(r, i).owner >= 0 && !sample(r, i).core) pending_.push_back({r, i});
+          if (sample(r, i).owner >= 0 && !sample(r, i).core) pending_.emplace_back(r, i);
         }
       }
       if (pending_.size() == before) continue;
@@ -320,7 +320,7 @@ class BandBuilder {
       order_.clear();
       for (int k = batch.start; k < batch.start + batch.count; ++k) {
         const float w = batch_weights_[static_cast<std::size_t>(k) * kLanes + s.lane];
-        if (std::abs(w) >= kNegligible) order_.push_back({batch_points_[k], w});
+        if (std::abs(w) >= kNegligible) order_.emplace_back(batch_points_[k], w);
       }
       std::sort(order_.begin(), order_.end());
       for (const auto& [point, weight] : order_) {

@@ -70,6 +70,7 @@ TEST(KnotPlacement, ReversingALineWithItsBodySideChangesNothing) {
 TEST(KnotPlacement, RenumberingVerticesChangesNothing) {
   const auto domain = bent_line(0.25, BodySide::kLeft);
   const int n = static_cast<int>(domain.mesh.vertices.size());
+  ASSERT_GT(n, 0);
   const auto other = [&](int v) { return (7 * v + 3) % n; };  // 7 and 15 have no common divisor
   DomainMesh renumbered = domain;
   for (int v = 0; v < n; ++v) renumbered.mesh.vertices[other(v)] = domain.mesh.vertices[v];

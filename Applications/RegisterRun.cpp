@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "Applications/RegisterBasis.h"
 #include "Images/IntensityRange.h"
 #include "Images/Moments.h"
 #include "Optimizers/SteepestDescent.h"
@@ -96,52 +97,6 @@ RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const Regist
   return outcome;
 }
 
-/// The spline's basis and, for triangles, its domain.
-template <int Dim>
-struct Basis {
-  std::shared_ptr<const SplineBasis<Dim>> basis;
-  std::optional<CreasedDomain> domain;
-  WeightField<Dim> bodies;  // null: none
-};
-
-Basis<2> triangular_basis(const RegisterOptions& options, const RegisterInput<2>& input,
-                          RunReport& report) {
-  CreasedDomainOptions wanted = {.degree = options.spline_degree(),
-                                 .smoothness = options.spline_smoothness(),
-                                 .creases = !options.no_creases,
-                                 .edge_length = options.mesh_size.value_or(0),
-                                 .num_triangles = options.triangles.value_or(0),
-                                 .rigid_bodies = options.rigidity_weight() > 0};
-  if (options.landmarks_conflict == "refine" && options.landmarks_mode == "exact") {
-    wanted.landmarks = input.landmarks;
-  }
-  const RegionOfInterest region =
-      input.region ? *input.region : rectangle_of(input.fixed.image.raster());
-  CreasedDomain domain =
-      input.labels ? make_creased_domain(region, *input.labels, input.feature_lines, wanted)
-                   : make_creased_domain(region, input.feature_lines, wanted);
-  report.add_warnings(domain.warnings);
-  Basis<2> result{.basis = domain.basis, .domain = {}, .bodies = nullptr};
-  if (domain.has_bodies()) result.bodies = body_weights<2>();
-  result.domain = std::move(domain);
-  return result;
-}
-
-template <int Dim>
-Basis<Dim> make_basis(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                      RunReport& report) {
-  if constexpr (Dim == 2) {
-    if (options.is_triangular()) return triangular_basis(options, input, report);
-  }
-  const Raster<Dim>& raster = input.fixed.image.raster();
-  const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
-  Basis<Dim> result;
-  result.basis = std::make_shared<const TensorBSplineBasis<Dim>>(covering_lattice(raster, length),
-                                                                 options.spline_degree());
-  if (input.labels) result.bodies = label_weights(*input.labels);
-  return result;
-}
-
 NullSpaceKind null_space_of(const std::string& name) {
   if (name == "qr") return NullSpaceKind::kQr;
   return name == "svd" ? NullSpaceKind::kSvd : NullSpaceKind::kElimination;
@@ -159,7 +114,7 @@ LandmarkOptions landmark_options(const RegisterOptions& options) {
 
 template <int Dim>
 Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                          const AffineMap<Dim>& start, const Basis<Dim>& basis,
+                          const AffineMap<Dim>& start, const RegisterBasis<Dim>& basis,
                           std::map<std::string, double>& weights) {
   Registration<Dim> registration = options.has_metric()
                                        ? Registration<Dim>(input.fixed.image, input.moving.image)
@@ -203,7 +158,7 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
                                     const Alignment<Dim>& alignment, RunReport& report,
                                     ProgressReporter& progress) {
   progress.report({.stage = "domain", .fraction = 0.05});
-  Basis<Dim> basis = make_basis(options, input, report);
+  RegisterBasis<Dim> basis = make_register_basis(options, input, report);
   report.end_stage("domain");
   RegisterOutcome<Dim> outcome;
   outcome.alignment = alignment;

@@ -1,0 +1,51 @@
+#include "Applications/RegisterBasis.h"
+
+namespace crease {
+namespace {
+
+RegisterBasis<2> triangular_basis(const RegisterOptions& options, const RegisterInput<2>& input,
+                                  RunReport& report) {
+  CreasedDomainOptions wanted = {.degree = options.spline_degree(),
+                                 .smoothness = options.spline_smoothness(),
+                                 .creases = !options.no_creases,
+                                 .edge_length = options.mesh_size.value_or(0),
+                                 .num_triangles = options.triangles.value_or(0),
+                                 .rigid_bodies = options.rigidity_weight() > 0};
+  if (options.landmarks_conflict == "refine" && options.landmarks_mode == "exact") {
+    wanted.landmarks = input.landmarks;
+  }
+  const RegionOfInterest region =
+      input.region ? *input.region : rectangle_of(input.fixed.image.raster());
+  CreasedDomain domain =
+      input.labels ? make_creased_domain(region, *input.labels, input.feature_lines, wanted)
+                   : make_creased_domain(region, input.feature_lines, wanted);
+  report.add_warnings(domain.warnings);
+  RegisterBasis<2> result{.basis = domain.basis, .domain = {}, .bodies = nullptr};
+  if (domain.has_bodies()) result.bodies = body_weights<2>();
+  result.domain = std::move(domain);
+  return result;
+}
+
+}  // namespace
+
+template <int Dim>
+RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
+                                       const RegisterInput<Dim>& input, RunReport& report) {
+  if constexpr (Dim == 2) {
+    if (options.is_triangular()) return triangular_basis(options, input, report);
+  }
+  const Raster<Dim>& raster = input.fixed.image.raster();
+  const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
+  RegisterBasis<Dim> result;
+  result.basis = std::make_shared<const TensorBSplineBasis<Dim>>(covering_lattice(raster, length),
+                                                                 options.spline_degree());
+  if (input.labels) result.bodies = label_weights(*input.labels);
+  return result;
+}
+
+template RegisterBasis<2> make_register_basis<2>(const RegisterOptions&, const RegisterInput<2>&,
+                                                 RunReport&);
+template RegisterBasis<3> make_register_basis<3>(const RegisterOptions&, const RegisterInput<3>&,
+                                                 RunReport&);
+
+}  // namespace crease

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "Applications/RegisterInput.h"
+#include "Applications/RegisterOptions.h"
+#include "Applications/RunReport.h"
+#include "Registration/CreasedDomain.h"
+
+namespace crease {
+
+/// The basis of a registration by splines.
+template <int Dim>
+struct RegisterBasis {
+  std::shared_ptr<const SplineBasis<Dim>> basis;
+  std::optional<CreasedDomain> domain;  ///< of splines on triangles
+  WeightField<Dim> bodies;              ///< null: no rigid bodies
+};
+
+/// Makes the basis that `--transform` and the options of the domain describe; warnings go to the report.
+/// @throws InvalidInput for lines, labels and landmarks that allow none.
+template <int Dim>
+RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
+                                       const RegisterInput<Dim>& input, RunReport& report);
+
+}  // namespace crease

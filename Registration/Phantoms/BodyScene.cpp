@@ -17,7 +17,7 @@ double coverage(const SoftDisc& disc, const Point<2>& y) {
 }  // namespace
 
 BodyScene::BodyScene(const std::vector<RigidBody>& bodies, SceneStyle style,
-                     std::shared_ptr<const PowerLawTexture> texture)
+                     std::shared_ptr<const PowerLawTexture<2>> texture)
     : bodies_(bodies), style_(std::move(style)), texture_(std::move(texture)) {
   for (const auto& body : bodies_) to_fixed_.push_back(body.motion.inverse());
 }

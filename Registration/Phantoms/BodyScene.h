@@ -32,7 +32,7 @@ class BodyScene {
  public:
   /// @param texture  null: none.
   BodyScene(const std::vector<RigidBody>& bodies, SceneStyle style,
-            std::shared_ptr<const PowerLawTexture> texture);
+            std::shared_ptr<const PowerLawTexture<2>> texture);
 
   /// Intensity at a point of the moving image, mm.
   double operator()(const Point<2>& y) const;
@@ -41,7 +41,7 @@ class BodyScene {
   std::vector<RigidBody> bodies_;
   std::vector<AffineMap<2>> to_fixed_;  // inverse motion per body
   SceneStyle style_;
-  std::shared_ptr<const PowerLawTexture> texture_;
+  std::shared_ptr<const PowerLawTexture<2>> texture_;
 };
 
 }  // namespace crease

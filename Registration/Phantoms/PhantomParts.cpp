@@ -1,5 +1,6 @@
 #include "Registration/Phantoms/PhantomParts.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 
@@ -8,11 +9,24 @@
 namespace crease {
 namespace {
 
-void add_noise(Image<float, 2>& image, double deviation, Random random) {
+template <int Dim>
+void add_noise(Image<float, Dim>& image, double deviation, Random random) {
   if (deviation == 0) return;
   for (float& value : image.values()) {
     value = static_cast<float>(value + deviation * random.normal());
   }
+}
+
+/// Calls f(sample's position in the image, its point) for all samples, in parallel.
+template <int Dim, typename Function>
+void for_each_sample(const Raster<Dim>& raster, const Function& f) {
+  const Vector<Dim> step = raster.index_to_point().col(0);
+  parallel_for(raster.num_rows(), [&](std::int64_t row) {
+    const Point<Dim> start = raster.row_start(row);
+    for (int i = 0; i < raster.size[0]; ++i) {
+      f(static_cast<std::size_t>(row * raster.size[0] + i), Point<Dim>(start + i * step));
+    }
+  });
 }
 
 }  // namespace
@@ -21,60 +35,81 @@ Random random_stream(const PhantomOptions& options, Stream stream) {
   return Random(options.seed, static_cast<std::uint64_t>(stream));
 }
 
-Raster<2> phantom_raster(int size) {
-  Raster<2> raster;
-  raster.size = {size, size};
+template <int Dim>
+Raster<Dim> phantom_raster(int size) {
+  Raster<Dim> raster;
+  raster.size.fill(size);
   return raster;
 }
 
-std::shared_ptr<const PowerLawTexture> make_texture(const PhantomOptions& options) {
+template <int Dim>
+std::shared_ptr<const PowerLawTexture<Dim>> make_texture(const PhantomOptions& options) {
   if (!options.texture) return nullptr;
   constexpr double kExponent = 1.5, kBlurMm = 1.2;
-  return std::make_shared<PowerLawTexture>(options.size, kExponent, kBlurMm,
-                                           random_stream(options, Stream::kTexture));
+  return std::make_shared<PowerLawTexture<Dim>>(options.size, kExponent, kBlurMm,
+                                                random_stream(options, Stream::kTexture));
 }
 
-DisplacementField<2> sample_displacement(const Raster<2>& raster,
-                                         const std::function<Point<2>(const Point<2>&)>& map) {
-  DisplacementField<2> field(raster, Vector<2>::Zero());
-  parallel_for(raster.size[1], [&](std::int64_t j) {
-    for (int i = 0; i < raster.size[0]; ++i) {
-      const Point<2> x = raster.point({i, static_cast<double>(j)});
-      field(i, static_cast<int>(j)) = map(x) - x;
-    }
+template <int Dim>
+DisplacementField<Dim> sample_displacement(
+    const Raster<Dim>& raster, const std::function<Point<Dim>(const Point<Dim>&)>& map) {
+  DisplacementField<Dim> field(raster, Vector<Dim>::Zero());
+  for_each_sample(raster, [&](std::size_t position, const Point<Dim>& x) {
+    field.values()[position] = map(x) - x;
   });
   return field;
 }
 
-std::pair<double, double> determinant_range(const DisplacementField<2>& field) {
+template <int Dim>
+std::pair<double, double> determinant_range(const DisplacementField<Dim>& field) {
+  const Raster<Dim>& raster = field.raster();
   double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-  const Vector<2> step = 2 * field.raster().spacing;
-  for (int j = 1; j + 1 < field.size()[1]; ++j) {
-    for (int i = 1; i + 1 < field.size()[0]; ++i) {
-      const Vector<2> x = Vector<2>::UnitX() + (field(i + 1, j) - field(i - 1, j)) / step.x();
-      const Vector<2> y = Vector<2>::UnitY() + (field(i, j + 1) - field(i, j - 1)) / step.y();
-      const double det = x.x() * y.y() - x.y() * y.x();
-      lower = std::min(lower, det);
-      upper = std::max(upper, det);
+  for (std::int64_t position = 0; position < raster.num_samples(); ++position) {
+    const auto index = field.index(position);
+    Matrix<Dim> jacobian = Matrix<Dim>::Identity();
+    bool inside = true;
+    for (int a = 0; a < Dim && inside; ++a) {
+      inside = index[a] > 0 && index[a] + 1 < raster.size[a];
+      if (!inside) break;
+      auto next = index, previous = index;
+      ++next[a];
+      --previous[a];
+      jacobian.col(a) += (field[next] - field[previous]) / (2 * raster.spacing[a]);
     }
+    if (!inside) continue;
+    const double det = jacobian.determinant();
+    lower = std::min(lower, det);
+    upper = std::max(upper, det);
   }
   return {lower, upper};
 }
 
-void sample_images(Phantom& phantom, const std::function<double(const Point<2>&)>& scene,
-                   double noise, const PhantomOptions& options) {
-  const Raster<2>& raster = phantom.displacement.raster();
-  phantom.fixed = phantom.moving = Image<float, 2>(raster);
-  parallel_for(raster.size[1], [&](std::int64_t row) {
-    const int j = static_cast<int>(row);
-    for (int i = 0; i < raster.size[0]; ++i) {
-      const Point<2> x = raster.point({double(i), double(j)});
-      phantom.moving(i, j) = static_cast<float>(scene(x));
-      phantom.fixed(i, j) = static_cast<float>(scene(x + phantom.displacement(i, j)));
-    }
+template <int Dim>
+void sample_images(PhantomImages<Dim>& phantom,
+                   const std::function<double(const Point<Dim>&)>& scene, double noise,
+                   const PhantomOptions& options) {
+  const Raster<Dim>& raster = phantom.displacement.raster();
+  phantom.fixed = phantom.moving = Image<float, Dim>(raster);
+  for_each_sample(raster, [&](std::size_t position, const Point<Dim>& x) {
+    phantom.moving.values()[position] = static_cast<float>(scene(x));
+    phantom.fixed.values()[position] =
+        static_cast<float>(scene(x + phantom.displacement.values()[position]));
   });
   add_noise(phantom.fixed, noise, random_stream(options, Stream::kFixedNoise));
   add_noise(phantom.moving, noise, random_stream(options, Stream::kMovingNoise));
 }
+
+#define CREASE_INSTANTIATE(Dim)                                                                  \
+  template Raster<Dim> phantom_raster<Dim>(int);                                                 \
+  template std::shared_ptr<const PowerLawTexture<Dim>> make_texture<Dim>(const PhantomOptions&); \
+  template DisplacementField<Dim> sample_displacement<Dim>(                                      \
+      const Raster<Dim>&, const std::function<Point<Dim>(const Point<Dim>&)>&);                  \
+  template std::pair<double, double> determinant_range<Dim>(const DisplacementField<Dim>&);      \
+  template void sample_images<Dim>(PhantomImages<Dim>&,                                          \
+                                   const std::function<double(const Point<Dim>&)>&, double,      \
+                                   const PhantomOptions&);
+CREASE_INSTANTIATE(2)
+CREASE_INSTANTIATE(3)
+#undef CREASE_INSTANTIATE
 
 }  // namespace crease

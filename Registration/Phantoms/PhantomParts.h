@@ -14,22 +14,28 @@ enum class Stream { kMotion = 1, kTexture, kObjects, kFixedNoise, kMovingNoise, 
 
 Random random_stream(const PhantomOptions& options, Stream stream);
 
-/// size x size pixels of 1 mm, the first centre at (0, 0).
-Raster<2> phantom_raster(int size);
+/// `size` pixels of 1 mm along every axis, the first centre at the origin.
+template <int Dim>
+Raster<Dim> phantom_raster(int size);
 
 /// f^-1.5 texture with blur of 1.2 mm for an image of the options' size; null when turned off.
-std::shared_ptr<const PowerLawTexture> make_texture(const PhantomOptions& options);
+template <int Dim>
+std::shared_ptr<const PowerLawTexture<Dim>> make_texture(const PhantomOptions& options);
 
 /// T(x) - x at every sample.
-DisplacementField<2> sample_displacement(const Raster<2>& raster,
-                                         const std::function<Point<2>(const Point<2>&)>& map);
+template <int Dim>
+DisplacementField<Dim> sample_displacement(const Raster<Dim>& raster,
+                                           const std::function<Point<Dim>(const Point<Dim>&)>& map);
 
 /// Smallest and largest det of the map's central differences over two pixels.
-std::pair<double, double> determinant_range(const DisplacementField<2>& displacement);
+template <int Dim>
+std::pair<double, double> determinant_range(const DisplacementField<Dim>& displacement);
 
 /// Fills fixed and moving from the moving image's analytic function and the displacement, and adds
 /// noise.
-void sample_images(Phantom& phantom, const std::function<double(const Point<2>&)>& scene,
-                   double noise, const PhantomOptions& options);
+template <int Dim>
+void sample_images(PhantomImages<Dim>& phantom,
+                   const std::function<double(const Point<Dim>&)>& scene, double noise,
+                   const PhantomOptions& options);
 
 }  // namespace crease

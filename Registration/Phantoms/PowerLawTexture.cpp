@@ -38,18 +38,22 @@ void fourier_transform(std::span<Complex> x, std::span<const Complex> roots) {
   }
 }
 
-// Rows of an n x n array, then its columns.
-void fourier_transform_2d(std::vector<Complex>& x, int n) {
+// Along every axis of an array of n per axis.
+template <int Dim>
+void fourier_transform_all(std::vector<Complex>& x, int n) {
   std::vector<Complex> roots(n);
   for (int j = 0; j < n; ++j) roots[j] = {std::cos(kTwoPi * j / n), std::sin(kTwoPi * j / n)};
-  parallel_for(
-      n, [&](std::int64_t row) { fourier_transform(std::span(x).subspan(row * n, n), roots); });
-  parallel_for(n, [&](std::int64_t column) {
-    std::vector<Complex> line(n);
-    for (int row = 0; row < n; ++row) line[row] = x[std::size_t(row) * n + column];
-    fourier_transform(line, roots);
-    for (int row = 0; row < n; ++row) x[std::size_t(row) * n + column] = line[row];
-  });
+  const std::int64_t num_lines = std::ssize(x) / n;
+  std::int64_t stride = 1;
+  for (int axis = 0; axis < Dim; ++axis, stride *= n) {
+    parallel_for(num_lines, [&](std::int64_t k) {
+      Complex* first = x.data() + k / stride * stride * n + k % stride;
+      std::vector<Complex> line(n);
+      for (int i = 0; i < n; ++i) line[i] = first[i * stride];
+      fourier_transform(line, roots);
+      for (int i = 0; i < n; ++i) first[i * stride] = line[i];
+    });
+  }
 }
 
 std::array<double, 4> cubic_weights(double t) {
@@ -60,44 +64,66 @@ std::array<double, 4> cubic_weights(double t) {
 
 }  // namespace
 
-PowerLawTexture::PowerLawTexture(double period_mm, double exponent, double blur_mm, Random random)
+template <int Dim>
+PowerLawTexture<Dim>::PowerLawTexture(double period_mm, double exponent, double blur_mm,
+                                      Random random)
     : size_(1) {
   while (size_ < period_mm) size_ *= 2;
   const int n = size_;
-  std::vector<Complex> spectrum(std::size_t(n) * n);
+  std::size_t count = 1;
+  for (int a = 0; a < Dim; ++a) count *= static_cast<std::size_t>(n);
+  std::vector<Complex> spectrum(count);
   double variance = 0;
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const double fx = double(i <= n / 2 ? i : i - n) / n, fy = double(j <= n / 2 ? j : j - n) / n;
-      const double f2 = fx * fx + fy * fy;
-      const Complex z(random.normal(), random.normal());
-      if (f2 == 0) continue;  // mean 0
-      const double blur = kTwoPi * blur_mm;
-      const double amplitude = std::pow(f2, -0.5 * exponent) * std::exp(-0.5 * blur * blur * f2);
-      const double prefilter = 9 / ((2 + std::cos(kTwoPi * fx)) * (2 + std::cos(kTwoPi * fy)));
-      variance += amplitude * amplitude * std::norm(z) / 2;
-      spectrum[std::size_t(j) * n + i] = amplitude * prefilter * z;
+  for (std::size_t k = 0; k < count; ++k) {
+    double f2 = 0, prefilter = 1;
+    for (std::size_t a = 0, rest = k; a < Dim; ++a, rest /= static_cast<std::size_t>(n)) {
+      const int i = static_cast<int>(rest % static_cast<std::size_t>(n));
+      const double f = double(i <= n / 2 ? i : i - n) / n;
+      f2 += f * f;
+      prefilter *= 3 / (2 + std::cos(kTwoPi * f));
     }
+    const Complex z(random.normal(), random.normal());
+    if (f2 == 0) continue;  // mean 0
+    const double blur = kTwoPi * blur_mm;
+    const double amplitude = std::pow(f2, -0.5 * exponent) * std::exp(-0.5 * blur * blur * f2);
+    variance += amplitude * amplitude * std::norm(z) / 2;
+    spectrum[k] = amplitude * prefilter * z;
   }
-  fourier_transform_2d(spectrum, n);
-  coefficients_.resize(spectrum.size());
+  fourier_transform_all<Dim>(spectrum, n);
+  coefficients_.resize(count);
   const double scale = 1 / std::sqrt(variance);
-  for (std::size_t i = 0; i < spectrum.size(); ++i) coefficients_[i] = scale * spectrum[i].real();
+  for (std::size_t i = 0; i < count; ++i) coefficients_[i] = scale * spectrum[i].real();
 }
 
-double PowerLawTexture::operator()(const Point<2>& x) const {
-  const double fx = std::floor(x[0]), fy = std::floor(x[1]);
-  const auto wx = cubic_weights(x[0] - fx), wy = cubic_weights(x[1] - fy);
+template <int Dim>
+double PowerLawTexture<Dim>::operator()(const Point<Dim>& x) const {
   const auto mask = static_cast<std::int64_t>(size_ - 1);
-  const auto i0 = static_cast<std::int64_t>(fx) - 1, j0 = static_cast<std::int64_t>(fy) - 1;
+  std::array<std::array<double, 4>, Dim> weights;
+  std::array<std::int64_t, Dim> first;
+  for (int a = 0; a < Dim; ++a) {
+    const double floor = std::floor(x[a]);
+    weights[a] = cubic_weights(x[a] - floor);
+    first[a] = static_cast<std::int64_t>(floor) - 1;
+  }
   double sum = 0;
-  for (int b = 0; b < 4; ++b) {
-    const double* row = &coefficients_[((j0 + b) & mask) * size_];
+  constexpr int kRows = Dim == 2 ? 4 : 16;
+  for (int r = 0; r < kRows; ++r) {
+    const int b = r % 4, c = r / 4;
+    std::int64_t row = (first[1] + b) & mask;
+    double weight = weights[1][b];
+    if constexpr (Dim == 3) {
+      row += ((first[2] + c) & mask) * size_;
+      weight *= weights[2][c];
+    }
+    const double* values = &coefficients_[static_cast<std::size_t>(row * size_)];
     double line = 0;
-    for (int a = 0; a < 4; ++a) line += wx[a] * row[(i0 + a) & mask];
-    sum += wy[b] * line;
+    for (int a = 0; a < 4; ++a) line += weights[0][a] * values[(first[0] + a) & mask];
+    sum += weight * line;
   }
   return sum;
 }
+
+template class PowerLawTexture<2>;
+template class PowerLawTexture<3>;
 
 }  // namespace crease

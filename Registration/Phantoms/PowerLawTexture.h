@@ -13,18 +13,22 @@ namespace crease {
 /// function again.
 ///
 /// Made by one inverse Fourier transform of random coefficients; the B-spline's prefilter is a
-/// division by its transform, (2 + cos 2 pi f_x)(2 + cos 2 pi f_y) / 9.
+/// division by its transform, the product over the axes of (2 + cos 2 pi f) / 3.
+template <int Dim>
 class PowerLawTexture {
  public:
   /// @param period_mm  rounded up to a power of two.
   /// @param blur_mm    deviation of the Gaussian.
   PowerLawTexture(double period_mm, double exponent, double blur_mm, Random random);
 
-  double operator()(const Point<2>& x) const;
+  double operator()(const Point<Dim>& x) const;
 
  private:
   int size_;                          // a power of two
-  std::vector<double> coefficients_;  // size_ x size_, first axis fastest
+  std::vector<double> coefficients_;  // size_ per axis, first axis fastest
 };
+
+extern template class PowerLawTexture<2>;
+extern template class PowerLawTexture<3>;
 
 }  // namespace crease

@@ -91,7 +91,7 @@ Phantom make_rigid_phantom(const RigidPhantomPlan& plan, const PhantomOptions& o
     map = std::make_shared<RigidBodiesMap>(jittered(plan, options, scale), plan.anchors,
                                            plan.spline_spacing_mm, plan.turn_share);
     phantom.truth = [map](const Point<2>& x) { return (*map)(x); };
-    phantom.displacement = sample_displacement(phantom_raster(options.size), phantom.truth);
+    phantom.displacement = sample_displacement(phantom_raster<2>(options.size), phantom.truth);
     determinants = determinant_range(phantom.displacement);
     if (determinants.first >= kSmallestDeterminant) break;
   }
@@ -103,7 +103,8 @@ Phantom make_rigid_phantom(const RigidPhantomPlan& plan, const PhantomOptions& o
   SceneStyle style = plan.style;
   if (plan.discs) style.discs = plan.discs(map->bodies());
   const double noise = options.noise.value_or(plan.default_noise);
-  sample_images(phantom, BodyScene(map->bodies(), style, make_texture(options)), noise, options);
+  sample_images<2>(phantom, BodyScene(map->bodies(), style, make_texture<2>(options)), noise,
+                   options);
   add_labels(phantom, *map);
   add_outlines(phantom, plan);
   add_landmarks(phantom, plan, map->bodies(), options);

@@ -50,6 +50,17 @@ TEST(PhantomCommand, BlobsHaveNeitherBodiesNorLandmarks) {
   }
 }
 
+TEST(PhantomCommand, BlobsHaveVolumes) {
+  const TemporaryFolder folder;
+  const auto run = run_crease({"phantom", "blobs", "--dimension", "3", "--size", "20",
+                               "--no-texture", "-o", folder.path().string()});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, "blobs: 20 x 20 x 20 voxels, in " + folder.path().string() + "\n");
+  EXPECT_EQ(read_image<3>(folder / "fixed.mha").image.size(), (std::array<int, 3>{20, 20, 20}));
+  EXPECT_EQ(read_displacement_field<3>(folder / "truth.mha").size(),
+            (std::array<int, 3>{20, 20, 20}));
+}
+
 TEST(PhantomCommand, SeedAloneDecidesTheBytes) {
   const TemporaryFolder folder;
   const auto bytes = [&](const std::string& name, const std::string& seed,
@@ -85,6 +96,9 @@ TEST(PhantomCommand, RefusesWhatItCannotDraw) {
            {"phantom", "sliding", "-o", output},  // of a later version
            {"phantom", "bodies", "--size", "8", "-o", output},
            {"phantom", "bodies", "--noise", "0.9", "-o", output},
+           {"phantom", "bodies", "--dimension", "3", "-o", output},
+           {"phantom", "blobs", "--dimension", "3", "--size", "1000", "-o", output},
+           {"phantom", "blobs", "--dimension", "4", "-o", output},
            {"phantom", "-o", output},
            {"phantom", "bodies"}}) {
     const auto run = run_crease(arguments);

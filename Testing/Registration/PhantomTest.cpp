@@ -129,6 +129,50 @@ TEST_P(PhantomKinds, NoiseHasItsDeviationAndIsIndependent) {
 INSTANTIATE_TEST_SUITE_P(Kinds, PhantomKinds, ::testing::ValuesIn(phantom_kinds()),
                          [](const auto& info) { return info.param; });
 
+TEST(VolumePhantoms, FixedImageIsTheMovingImageAtTheTruth) {
+  const VolumePhantom phantom = make_volume_phantom("blobs", {.size = 32, .seed = 3});
+  const auto moving = make_interpolator<3>(phantom.moving);
+  double sum = 0, unregistered = 0;
+  int count = 0;
+  const Raster<3>& raster = phantom.fixed.raster();
+  for (std::int64_t n = 0; n < raster.num_samples(); ++n) {
+    const auto index = phantom.fixed.index(n);
+    const Point<3> x(index[0], index[1], index[2]);
+    const Point<3> y = phantom.truth(x);
+    EXPECT_LT((x + phantom.displacement[index] - y).norm(), 1e-12);
+    if (y.minCoeff() < 2 || y.maxCoeff() > 29) continue;  // away from the border
+    const double error = moving->evaluate(y).value - phantom.fixed[index];
+    sum += error * error;
+    unregistered += std::pow(phantom.moving[index] - phantom.fixed[index], 2);
+    ++count;
+  }
+  EXPECT_GT(count, raster.num_samples() / 2);
+  EXPECT_LT(std::sqrt(sum / count), 0.004);  // texture and blobs of 1.2 pixels
+  EXPECT_LT(sum, 1e-2 * unregistered);
+  double largest = 0;
+  for (const auto& u : phantom.displacement.values()) largest = std::max(largest, u.norm());
+  EXPECT_LE(largest, 0.04 * 32 * (1 + 1e-12));
+  EXPECT_GT(largest, 0.5);
+}
+
+TEST(VolumePhantoms, SameSeedSameBytesOnAnyNumberOfThreads) {
+  const PhantomOptions options = {.size = 24, .seed = 5, .noise = 0.02};
+  const VolumePhantom one = make_volume_phantom("blobs", options);
+  for (const int threads : {1, 3}) {
+    set_num_threads(threads);
+    const VolumePhantom again = make_volume_phantom("blobs", options);
+    EXPECT_TRUE(same_bytes(one.fixed, again.fixed) && same_bytes(one.moving, again.moving));
+  }
+  set_num_threads(0);
+}
+
+TEST(VolumePhantoms, RefusesOtherKindsAndSizes) {
+  EXPECT_THAT([] { make_volume_phantom("spine"); },
+              ThrowsMessage<InvalidInput>(HasSubstr("in 3D there is blobs")));
+  EXPECT_THAT([] { make_volume_phantom("blobs", {.size = 8}); },
+              ThrowsMessage<InvalidInput>(HasSubstr("is not in 16 .. 512")));
+}
+
 class RigidPhantoms : public ::testing::TestWithParam<std::string> {};
 
 Point<2> moved(const PhantomBody& body, const Point<2>& x) {

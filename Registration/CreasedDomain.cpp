@@ -57,7 +57,8 @@ bool CreasedDomain::has_bodies() const {
 CreasedDomain make_creased_domain(const RegionOfInterest& region,
                                   const std::vector<FeatureLine>& lines,
                                   const CreasedDomainOptions& options) {
-  const DomainMaker make = [&](const std::vector<FineDisc>& discs) {
+  const DomainMaker make = [&](std::vector<FineDisc> discs) {
+    discs.insert(discs.end(), options.fine_discs.begin(), options.fine_discs.end());
     return domain_with_discs(region, lines, options, discs);
   };
   return options.landmarks.empty() ? make({}) : refined_for_landmarks(options.landmarks, make);

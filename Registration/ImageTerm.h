@@ -27,6 +27,7 @@ class ImageTerm {
   double largest_step(const Eigen::Ref<const ControlPoints<Dim>>& step) const;
 
   const Metric<Dim>& metric() const { return *metric_; }
+  const std::shared_ptr<Metric<Dim>>& shared_metric() const { return metric_; }
   const BoundGrid<Dim>& grid() const { return *grid_; }
   const AffineMap<Dim>& affine() const { return affine_; }
 

@@ -74,6 +74,27 @@ Registration<Dim>& Registration<Dim>::initial(AffineMap<Dim> map) {
 }
 
 template <int Dim>
+Registration<Dim>& Registration<Dim>::go_on_from(const RegistrationResult<Dim>& earlier) {
+  parts_->start = earlier.transform;
+  parts_->initial = earlier.initial;
+  for (auto& energy : parts_->energies) {
+    const auto used = earlier.weights.find(energy.name);
+    if (used != earlier.weights.end()) energy.weight = used->second;
+  }
+  const auto landmarks = earlier.weights.find("landmarks");
+  if (landmarks != earlier.weights.end()) parts_->landmark_options.weight = landmarks->second;
+  parts_->schedule.levels = 1;
+  parts_->schedule.adapt_weights = false;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::look_for_finer_places(bool look) {
+  parts_->look_for_finer_places = look;
+  return *this;
+}
+
+template <int Dim>
 Registration<Dim>& Registration<Dim>::basis(std::shared_ptr<const SplineBasis<Dim>> basis) {
   parts_->basis = std::move(basis);
   return *this;

@@ -11,6 +11,7 @@
 #include "Images/MakeInterpolator.h"
 #include "Optimizers/NullSpace.h"
 #include "Optimizers/Optimizer.h"
+#include "Registration/FinerPlaces.h"
 #include "Registration/InitialAlignment.h"
 #include "Registration/LandmarkConstraints.h"
 #include "Registration/Landmarks.h"
@@ -78,7 +79,9 @@ struct RegistrationResult {
   std::string stopped_because;
   bool converged = true;  ///< false: stopped by a limit or cancelled
   bool improved = true;
-  std::map<std::string, double> timings_s;  ///< "alignment", "binding", "start", "optimization"
+  double cost = 0;                            ///< weighted sum of all terms, at the finest level
+  std::vector<FinerPlace<Dim>> finer_places;  ///< where asked for
+  std::map<std::string, double> timings_s;    ///< "alignment", "binding", "start", "optimization"
   std::vector<std::string> warnings;
 };
 
@@ -110,6 +113,12 @@ class Registration {
   Registration& alignment(AlignmentOptions options);
   /// A is given.
   Registration& initial(AffineMap<Dim> map);
+  /// Goes on from an earlier result, in another basis: its map is carried into that basis (the nearest one
+  /// in the mean square that meets the landmarks), weights are as they were used there, and the finest level
+  /// alone is run.
+  Registration& go_on_from(const RegistrationResult<Dim>& earlier);
+  /// Fills RegistrationResult::finer_places at the end.
+  Registration& look_for_finer_places(bool look = true);
   /// Of u; needed.
   Registration& basis(std::shared_ptr<const SplineBasis<Dim>> basis);
   /// How images are compared; the default is ssd().

@@ -15,6 +15,7 @@ struct RegistrationParts {
   InterpolationKind interpolation = InterpolationKind::kCubic;
   AlignmentOptions alignment;
   std::optional<AffineMap<Dim>> initial;
+  std::shared_ptr<const SplineTransform<Dim>> start;  ///< null: found by the run
   std::shared_ptr<const SplineBasis<Dim>> basis;
   MetricFactory<Dim> metric = ssd<Dim>();
   double image_weight = 1;
@@ -30,6 +31,7 @@ struct RegistrationParts {
   NullSpaceKind null_space = NullSpaceKind::kElimination;
   std::shared_ptr<const Optimizer> optimizer;  ///< null: Gauss-Newton, tuned per level
   Schedule schedule;
+  bool look_for_finer_places = false;
 
   bool has_images() const { return fixed.has_value() && image_weight > 0; }
   const Mask<Dim>* fixed_mask_pointer() const { return fixed_mask ? &*fixed_mask : nullptr; }

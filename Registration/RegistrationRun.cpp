@@ -10,9 +10,11 @@
 #include "Metrics/TargetDisplacement.h"
 #include "Optimizers/GaussNewton.h"
 #include "Registration/DeterminedParameters.h"
+#include "Registration/FinerPlaces.h"
 #include "Registration/OpticalFlow.h"
 #include "Registration/SamplesInside.h"
 #include "Registration/StartingPoint.h"
+#include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/JacobianMap.h"
 
 namespace crease {
@@ -235,6 +237,13 @@ bool RegistrationRun<Dim>::expects_similar_intensities() const {
 template <int Dim>
 std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
   std::vector<Phi> candidates;
+  if (parts_.start != nullptr) {
+    const SplineTransform<Dim>& map = *parts_.start;
+    return {StartingPoint<Dim>(pattern_, *null_space_, energies_)
+                .nearest_to(*parts_.basis, [&](const Point<Dim>& x) -> Vector<Dim> {
+                  return map.map(x) - affine_(x);
+                })};
+  }
   const bool pulled = null_space_->rank() > 0 || energies_.size() > parts_.energies.size();
   candidates.push_back(pulled ? StartingPoint<Dim>(pattern_, *null_space_, energies_).smoothest()
                               : Phi::Zero(null_space_->full_size()));
@@ -361,19 +370,10 @@ void RegistrationRun<Dim>::keep_better(const Phi& start, Phi& phi) {
 /// Whether the level is worth another minimisation, with other weights.
 template <int Dim>
 bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level, const Phi& phi) {
-  const Level& here = levels_[l];
-  const auto bending = level.terms_after.find("bending");
-  if (!weights_ || bending == level.terms_after.end()) return false;
+  if (!weights_ || !level.terms_after.contains("bending")) return false;
   const bool finest = l + 1 == levels_.size();
   if (finest && folds(phi)) return weights_->stiffen(energies_);
-  const Metric<Dim>& metric = here.image->metric();
-  return weights_->balance({.image_energy = metric.unit() * level.terms_after.at("image"),
-                            .noise_power = metric.noise_power(),
-                            .counted_measure = here.counted_measure,
-                            .correlated_measure = here.correlated_measure,
-                            .bending_energy = bending->second,
-                            .determined_parameters = determined_by_images(l, phi)},
-                           finest, energies_);
+  return weights_->balance(balance_at(l, phi, level.terms_after), finest, energies_);
 }
 
 template <int Dim>
@@ -404,7 +404,45 @@ void RegistrationRun<Dim>::optimise() {
   Phi& phi = candidates.front();
   if (result_.levels.size() == levels_.size()) keep_better(start, phi);
   add_time("optimization");
+  if (parts_.look_for_finer_places && parts_.has_images() && !cancelled_) {
+    look_for_finer_places(phi);
+    add_time("finer places");
+  }
   report(phi);
+}
+
+template <int Dim>
+BendingBalance RegistrationRun<Dim>::balance_at(std::size_t l, const Phi& phi,
+                                                const std::map<std::string, double>& terms) {
+  const Level& here = levels_[l];
+  const Metric<Dim>& metric = here.image->metric();
+  return {.image_energy = metric.unit() * terms.at("image"),
+          .noise_power = metric.noise_power(),
+          .counted_measure = here.counted_measure,
+          .correlated_measure = here.correlated_measure,
+          .bending_energy = terms.at("bending"),
+          .determined_parameters = determined_by_images(l, phi)};
+}
+
+template <int Dim>
+void RegistrationRun<Dim>::look_for_finer_places(const Phi& phi) {
+  const auto bending = std::ranges::find(energies_, "bending", &WeightedEnergy<Dim>::name);
+  if (bending == energies_.end())
+    return;  // nothing says how much patches of half the size would cost
+  const auto* energy = dynamic_cast<const BendingEnergy<Dim>*>(bending->energy.get());
+  if (energy == nullptr) return;
+  SplineTransform<Dim> transform(parts_.basis, affine_);
+  transform.set_parameters(phi);
+  const Level& finest = levels_.back();
+  const std::size_t l = levels_.size() - 1;
+  const double noise = balance_at(l, phi, result_.levels.back().terms_after).noise_density();
+  result_.finer_places = finer_places<Dim>({.transform = transform,
+                                            .grid = finest.grid,
+                                            .metric = finest.image->shared_metric(),
+                                            .image_weight = finest.image_weight,
+                                            .bending_weight = bending->weight,
+                                            .rigid = energy->rigid(),
+                                            .noise_density = parts_.image_weight * noise});
 }
 
 template <int Dim>
@@ -412,7 +450,11 @@ void RegistrationRun<Dim>::report(const Phi& phi) {
   auto transform = std::make_shared<SplineTransform<Dim>>(parts_.basis, affine_);
   transform->set_parameters(phi);
   if (!result_.levels.empty()) result_.energies = result_.levels.back().terms_after;
+  if (levels_.back().image != nullptr || !parts_.has_images()) {
+    result_.cost = objective(levels_.back())->evaluate(phi, nullptr, nullptr);
+  }
   if (parts_.has_images()) {
+    if (levels_.back().image == nullptr) choose_samples(levels_.size() - 1, {phi});  // cancelled
     const ControlPoints<Dim> none = ControlPoints<Dim>::Zero(Dim, pattern_->size());
     ImageTerm<Dim>& image = *levels_.back().image;
     result_.metric_before = image.evaluate(none, 1, nullptr, nullptr);

@@ -53,6 +53,9 @@ class RegistrationRun {
   void book(const OptimizerResult& round, LevelReport& level);
   bool renew_weights(std::size_t l, const LevelReport& level, const Phi& phi);
   double determined_by_images(std::size_t l, const Phi& phi);
+  BendingBalance balance_at(std::size_t l, const Phi& phi,
+                            const std::map<std::string, double>& terms);
+  void look_for_finer_places(const Phi& phi);
   bool folds(const Phi& phi) const;
   OptimizerResult optimise_level(std::size_t level, const Phi& start,
                                  const std::shared_ptr<const Optimizer>& optimizer);

@@ -93,6 +93,21 @@ Eigen::VectorXd StartingPoint<Dim>::fitted_to(ImageTerm<Dim>& target,
   return minimum(std::move(stiffness), -gradient, near);
 }
 
+template <int Dim>
+Eigen::VectorXd StartingPoint<Dim>::nearest_to(
+    const SplineBasis<Dim>& basis, const DisplacementFunction<Dim>& displacement) const {
+  const ProjectionSystem<Dim> system = projection_system(basis, displacement);
+  std::vector<double> mass(static_cast<std::size_t>(pattern_->num_entries()), 0.0);
+  for (int i = 0; i < pattern_->size(); ++i) {
+    for (int s = pattern_->row_start()[i]; s < pattern_->row_start()[i + 1]; ++s) {
+      mass[static_cast<std::size_t>(s)] = system.mass.coeff(i, pattern_->columns()[s]);
+    }
+  }
+  const int copies = null_space_.num_columns() == Dim ? 1 : Dim;
+  return QuadraticMinimizer(lower_triangle(*pattern_, mass, copies), null_space_)
+      .minimum(system.rhs.reshaped());
+}
+
 template class StartingPoint<2>;
 template class StartingPoint<3>;
 

@@ -6,6 +6,7 @@
 #include "Optimizers/NullSpace.h"
 #include "Registration/ImageTerm.h"
 #include "Registration/RegistrationObjective.h"
+#include "Transforms/SplineProjection.h"
 
 namespace crease {
 
@@ -26,6 +27,9 @@ class StartingPoint {
   /// Weighted least squares to the target of the term (TargetDisplacement), smoothed by the energies.
   /// @param near  where bodies are first looked for.
   Eigen::VectorXd fitted_to(ImageTerm<Dim>& target, const Eigen::VectorXd& near) const;
+  /// The spline of `basis` that is nearest to a displacement, in the mean square over the domain.
+  Eigen::VectorXd nearest_to(const SplineBasis<Dim>& basis,
+                             const DisplacementFunction<Dim>& displacement) const;
 
  private:
   Eigen::VectorXd minimum(std::vector<double> stiffness, const ControlPoints<Dim>& pull,

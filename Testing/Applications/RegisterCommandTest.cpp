@@ -131,7 +131,7 @@ TEST_F(RegisterCommand, ThreadsAndVerbosityChangeNoByte) {
   std::vector<std::pair<std::string, std::string>> first;
   for (const std::string threads : {"1", "2", "8"}) {
     auto arguments = std::vector<std::string>{"--threads", threads};
-    if (threads == "8") arguments.push_back("--json");
+    if (threads == "8") arguments.emplace_back("--json");
     ASSERT_EQ(run(arguments).code, 0);
     EXPECT_EQ(read_result(output())["threads"], std::stoi(threads));
     std::vector<std::pair<std::string, std::string>> contents;
@@ -225,7 +225,7 @@ TEST_F(RegisterCommand, FormatsWithoutSpacingGetTheirGeometryBeside) {
   const auto as_png = [&](const char* name) {
     auto pixels = read_image<2>(image(std::string(name) + ".mha")).image;
     for (float& v : pixels.values()) v = std::clamp(200 * v, 0.0f, 255.0f);
-    const std::string file = (folder / (std::string(name) + ".png")).string();
+    std::string file = (folder / (std::string(name) + ".png")).string();
     write_image(file, pixels, PixelType::kUint8);
     return file;
   };

@@ -47,4 +47,17 @@ TEST(Registration, RefusesWhatItCannotRun) {
       ThrowsMessage<InvalidInput>(HasSubstr("constant")));
 }
 
+TEST(Registration, MayBeCancelledAtAnyMoment) {
+  const Raster<2> raster = testing::raster_of<2>(64);
+  const auto basis = tensor_basis<2>(raster, 16);
+  for (int last = 1; last <= 12; ++last) {
+    Registration<2> registration(testing::scene_image<2>(raster), testing::scene_image<2>(raster));
+    registration.basis(basis).energy("bending", 1, bending<2>());
+    int calls = 0;
+    const auto result =
+        registration.run([&](const RegistrationProgress&) { return ++calls < last; });
+    EXPECT_NE(result.transform, nullptr) << "cancelled at call " << last;
+  }
+}
+
 }  // namespace crease

@@ -51,7 +51,7 @@ Eigen::SparseMatrix<double> bending_matrix(const SplineBasis<Dim>& basis,
 
 template <int Dim>
 BendingEnergy<Dim>::BendingEnergy(const SplineBasis<Dim>& basis, const WeightField<Dim>& weights)
-    : form_(bending_matrix<Dim>(basis, weights)) {}
+    : weights_(weights), form_(bending_matrix<Dim>(basis, weights)) {}
 
 template class BendingEnergy<2>;
 template class BendingEnergy<3>;

@@ -24,6 +24,8 @@ class BendingEnergy final : public Energy<Dim> {
 
   /// K, n x n, the same for every coordinate.
   const Eigen::SparseMatrix<double>& matrix() const { return form_.matrix(); }
+  /// w; null: soft everywhere.
+  const WeightField<Dim>& rigid() const { return weights_; }
   double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const override {
     return form_.evaluate(phi, scale, gradient, hessian);
@@ -34,6 +36,7 @@ class BendingEnergy final : public Energy<Dim> {
   }
 
  private:
+  WeightField<Dim> weights_;
   QuadraticForm<Dim> form_;
 };
 

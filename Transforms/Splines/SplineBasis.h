@@ -69,6 +69,8 @@ class SplineBasis {
   virtual double measure() const = 0;
   /// Mean edge length of the patches, mm.
   virtual double mean_edge_length() const = 0;
+  /// Mean edge length of the patch that holds x, mm; of all unless they differ.
+  virtual double edge_length(const Point<Dim>&) const { return mean_edge_length(); }
   /// Degree to ask of quadrature() for integrals of products of this many derivatives of that order.
   virtual int product_degree(int factors, int derivative) const {
     return std::max(0, factors * (degree() - derivative));

@@ -172,6 +172,22 @@ Box<Dim> TriangularBSplineBasis<Dim>::bounds() const {
 }
 
 template <int Dim>
+double TriangularBSplineBasis<Dim>::edge_length(const Point<Dim>& x) const {
+  const int simplex = find_simplex(x);
+  if (simplex < 0) return mean_edge_length_;
+  const auto& corners = net_.mesh.simplices[static_cast<std::size_t>(simplex)];
+  double sum = 0;
+  for (int a = 0; a <= Dim; ++a) {
+    for (int b = 0; b < a; ++b) {
+      sum += (net_.mesh.vertices[static_cast<std::size_t>(corners[a])] -
+              net_.mesh.vertices[static_cast<std::size_t>(corners[b])])
+                 .norm();
+    }
+  }
+  return sum / (Dim * (Dim + 1) / 2);
+}
+
+template <int Dim>
 int TriangularBSplineBasis<Dim>::find_simplex(const Point<Dim>& x) const {
   return locator_->find(x);
 }

@@ -61,6 +61,7 @@ class TriangularBSplineBasis final : public SplineBasis<Dim> {
   Box<Dim> bounds() const override;
   double measure() const override { return measure_; }
   double mean_edge_length() const override { return mean_edge_length_; }
+  double edge_length(const Point<Dim>& x) const override;
   BasisValues<Dim> evaluate(const Point<Dim>& x, int derivatives = 0) const override;
   ControlPoints<Dim> greville_points() const override;
   /// Elements are cells of the arrangement of knot segments (KnotCells), `patch` = the triangle.

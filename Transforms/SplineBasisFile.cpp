@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
@@ -66,20 +67,25 @@ std::vector<Point<Dim>> points_of(const JsonReader& reader) {
 }
 
 template <int Dim>
+void add_mesh(const SimplexMesh<Dim>& mesh, Json& json) {
+  json["vertices"] = flat<Dim>(mesh.vertices);
+  json["simplices"] = mesh.simplices;
+  json["regions"] = mesh.regions;
+}
+
+template <int Dim>
 Json triangular_to_json(const KnotNet<Dim>& net) {
-  Json simplices = Json::array(), clouds = Json::array(), creases = Json::array();
-  for (const auto& simplex : net.mesh.simplices) simplices.push_back(simplex);
+  Json clouds = Json::array(), creases = Json::array();
   for (const auto& cloud : net.clouds) clouds.push_back(flat<Dim>(cloud));
   for (const auto& edge : net.crease_edges) {
     creases.push_back({{"vertices", edge.vertices}, {"body_side", edge.body_side}});
   }
-  return {{"kind", "triangular"},
-          {"degree", net.degree},
-          {"vertices", flat<Dim>(net.mesh.vertices)},
-          {"simplices", simplices},
-          {"regions", net.mesh.regions},
-          {"clouds", clouds},
-          {"crease_edges", creases}};
+  Json json = {{"kind", "triangular"},
+               {"degree", net.degree},
+               {"clouds", clouds},
+               {"crease_edges", creases}};
+  add_mesh(net.mesh, json);
+  return json;
 }
 
 /// A list of as many vertex numbers as the array holds.
@@ -94,32 +100,64 @@ std::array<int, Count> vertex_numbers(const JsonReader& reader, std::size_t num_
 }
 
 template <int Dim>
-std::shared_ptr<const SplineBasis<Dim>> triangular_from_json(const JsonReader& reader) {
-  KnotNet<Dim> net;
-  net.degree = reader.at("degree").integer(1, 5);
-  net.mesh.vertices = points_of<Dim>(reader.at("vertices"));
-  const auto num_vertices = net.mesh.vertices.size();
+SimplexMesh<Dim> mesh_from_json(const JsonReader& reader) {
+  SimplexMesh<Dim> mesh;
+  mesh.vertices = points_of<Dim>(reader.at("vertices"));
   const JsonReader simplices = reader.at("simplices");
   for (std::size_t n = 0; n < simplices.size(); ++n) {
-    net.mesh.simplices.push_back(vertex_numbers<Dim + 1>(simplices.at(n), num_vertices));
+    mesh.simplices.push_back(vertex_numbers<Dim + 1>(simplices.at(n), mesh.vertices.size()));
   }
   const JsonReader regions = reader.at("regions");
   for (std::size_t n = 0; n < regions.size(); ++n) {
-    net.mesh.regions.push_back(regions.at(n).integer(0, std::numeric_limits<int>::max()));
+    mesh.regions.push_back(regions.at(n).integer(0, std::numeric_limits<int>::max()));
   }
-  if (!net.mesh.regions.empty() && net.mesh.regions.size() != net.mesh.simplices.size()) {
+  if (!mesh.regions.empty() && mesh.regions.size() != mesh.simplices.size()) {
     regions.fail_here("does not have one number per simplex");
   }
+  return mesh;
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> triangular_from_json(const JsonReader& reader) {
+  KnotNet<Dim> net;
+  net.degree = reader.at("degree").integer(1, 5);
+  net.mesh = mesh_from_json<Dim>(reader);
   const JsonReader clouds = reader.at("clouds");
   for (std::size_t n = 0; n < clouds.size(); ++n)
     net.clouds.push_back(points_of<Dim>(clouds.at(n)));
   const JsonReader creases = reader.at("crease_edges");
   for (std::size_t n = 0; n < creases.size(); ++n) {
     const JsonReader edge = creases.at(n);
-    net.crease_edges.push_back(
-        {vertex_numbers<2>(edge.at("vertices"), num_vertices), edge.at("body_side").flag()});
+    net.crease_edges.push_back({vertex_numbers<2>(edge.at("vertices"), net.mesh.vertices.size()),
+                                edge.at("body_side").flag()});
   }
   return std::make_shared<TriangularBSplineBasis<Dim>>(std::move(net));
+}
+
+/// The vertices' triangles are written too: control points mean nothing without them, and rules for placing
+/// them may change.
+Json powell_sabin_to_json(const PowellSabinNet& net) {
+  std::vector<Point<2>> corners;
+  for (const auto& triangle : net.triangles) {
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+  }
+  Json json = {{"kind", "powell-sabin"}, {"triangles", flat<2>(corners)}};
+  add_mesh(net.mesh, json);
+  return json;
+}
+
+std::shared_ptr<const SplineBasis<2>> powell_sabin_from_json(const JsonReader& reader) {
+  PowellSabinNet net;
+  net.mesh = mesh_from_json<2>(reader);
+  const JsonReader triangles = reader.at("triangles");
+  const auto corners = points_of<2>(triangles);
+  if (corners.size() != 3 * net.mesh.vertices.size()) {
+    triangles.fail_here("does not have three points per vertex");
+  }
+  for (std::size_t k = 0; k < corners.size(); k += 3) {
+    net.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
+  }
+  return std::make_shared<PowellSabinBasis>(std::move(net));
 }
 
 }  // namespace
@@ -132,6 +170,11 @@ nlohmann::json basis_to_json(const SplineBasis<Dim>& basis) {
   if (const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis)) {
     return triangular_to_json(triangular->net());
   }
+  if constexpr (Dim == 2) {
+    if (const auto* powell_sabin = dynamic_cast<const PowellSabinBasis*>(&basis)) {
+      return powell_sabin_to_json(powell_sabin->net());
+    }
+  }
   throw InvalidInput("save_transform: splines of this kind cannot be written to a file.");
 }
 
@@ -140,6 +183,9 @@ std::shared_ptr<const SplineBasis<Dim>> basis_from_json(const JsonReader& reader
   const std::string kind = reader.at("kind").text();
   if (kind == "tensor") return tensor_from_json<Dim>(reader);
   if (kind == "triangular") return triangular_from_json<Dim>(reader);
+  if constexpr (Dim == 2) {
+    if (kind == "powell-sabin") return powell_sabin_from_json(reader);
+  }
   reader.fail(message("the spline kind \"", kind, "\" is unknown"));
 }
 

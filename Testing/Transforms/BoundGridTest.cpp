@@ -6,7 +6,9 @@
 #include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Testing/Transforms/SampleSplines.h"
+#include "Transforms/Domains/StructuredTriangulation.h"
 #include "Transforms/SparseRowGrid.h"
+#include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TensorBSplineGrid.h"
 
 namespace crease {
@@ -31,14 +33,36 @@ Raster<Dim> raster_over(const TensorLattice<Dim>& lattice) {
 template <int Dim, int Degree, bool Separable>
 struct Kind {
   static constexpr int kDim = Dim;
-  static std::unique_ptr<BoundGrid<Dim>> bind(const TensorBSplineBasis<Dim>& basis,
+  static std::shared_ptr<const SplineBasis<Dim>> basis() {
+    return testing::small_basis<Dim>(Degree);
+  }
+  static std::unique_ptr<BoundGrid<Dim>> bind(const SplineBasis<Dim>& basis,
                                               const Raster<Dim>& raster) {
     if (Separable) {
-      return std::make_unique<TensorBSplineGrid<Dim>>(basis.lattice(), Degree, raster);
+      const auto& lattice = dynamic_cast<const TensorBSplineBasis<Dim>&>(basis).lattice();
+      return std::make_unique<TensorBSplineGrid<Dim>>(lattice, Degree, raster);
     }
     return std::make_unique<SparseRowGrid<Dim>>(basis, raster);
   }
-  static constexpr int kDegree = Degree;
+};
+
+/// On triangles over the same lattice.
+template <bool Own>
+struct PowellSabinKind {
+  static constexpr int kDim = 2;
+  static std::shared_ptr<const SplineBasis<2>> basis() {
+    const auto lattice = testing::small_lattice<2>();
+    Box<2> box;
+    box.add({0, 0});
+    box.add({double(lattice.spans[0]), double(lattice.spans[1])});
+    auto mesh = structured_triangulation(box, 3, 2);
+    for (auto& v : mesh.vertices) v = lattice.point(v);
+    return std::make_shared<PowellSabinBasis>(std::move(mesh));
+  }
+  static std::unique_ptr<BoundGrid<2>> bind(const SplineBasis<2>& basis, const Raster<2>& raster) {
+    if (Own) return basis.bind(raster);
+    return std::make_unique<SparseRowGrid<2>>(basis, raster);
+  }
 };
 
 }  // namespace
@@ -47,8 +71,8 @@ template <typename T>
 class BoundGridSuite : public ::testing::Test {
  public:
   static constexpr int kDim = T::kDim;
-  std::shared_ptr<const TensorBSplineBasis<kDim>> basis = testing::small_basis<kDim>(T::kDegree);
-  Raster<kDim> raster = raster_over<kDim>(basis->lattice());
+  std::shared_ptr<const SplineBasis<kDim>> basis = T::basis();
+  Raster<kDim> raster = raster_over<kDim>(testing::small_lattice<kDim>());
   std::unique_ptr<BoundGrid<kDim>> grid = T::bind(*basis, raster);
   ControlPoints<kDim> phi = testing::Numbers(2).columns<kDim>(basis->num_control_points(), 3.0);
 
@@ -91,9 +115,10 @@ class BoundGridSuite : public ::testing::Test {
   }
 };
 
-using Kinds = ::testing::Types<Kind<2, 1, true>, Kind<2, 2, true>, Kind<2, 3, true>,
-                               Kind<2, 4, true>, Kind<2, 5, true>, Kind<3, 1, true>,
-                               Kind<3, 3, true>, Kind<2, 3, false>, Kind<3, 2, false>>;
+using Kinds =
+    ::testing::Types<Kind<2, 1, true>, Kind<2, 2, true>, Kind<2, 3, true>, Kind<2, 4, true>,
+                     Kind<2, 5, true>, Kind<3, 1, true>, Kind<3, 3, true>, Kind<2, 3, false>,
+                     Kind<3, 2, false>, PowellSabinKind<false>, PowellSabinKind<true>>;
 TYPED_TEST_SUITE(BoundGridSuite, Kinds);
 
 TYPED_TEST(BoundGridSuite, CoversTheSamplesOfTheDomain) {

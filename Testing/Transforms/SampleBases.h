@@ -10,6 +10,7 @@
 #include "Transforms/Domains/KnotPlacement.h"
 #include "Transforms/Domains/Mesher.h"
 #include "Transforms/Domains/TetrahedronKnots.h"
+#include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
@@ -81,6 +82,8 @@ std::vector<SampleBasis<Dim>> sample_bases(const Box<Dim>& box) {
     bases.push_back({"triangles, C1 cubic", triangles_over(box, {.degree = 3, .smoothness = 1})});
     bases.push_back({"triangles, quartic", triangles_over(box, {.degree = 4})});
     bases.push_back({"creased triangles", creased_over(box)});
+    bases.push_back(
+        {"Powell-Sabin", std::make_shared<PowellSabinBasis>(structured_triangulation(box, 4, 3))});
   } else {
     bases.push_back({"tetrahedra, quadratic",
                      std::make_shared<TriangularBSplineBasis<3>>(

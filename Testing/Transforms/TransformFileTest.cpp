@@ -11,6 +11,7 @@
 #include "Testing/Transforms/SampleSplines.h"
 #include "Testing/Transforms/Splines/TestNets.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
 namespace crease {
@@ -113,6 +114,26 @@ TEST_F(TransformFile, KeepsTheWholeKnotNet) {
   save_transform(transform, file());
   change("\"degree\": 3", "\"degree\": 2");
   expect_error("its contents contradict each other");
+}
+
+TEST_F(TransformFile, KeepsTheWholePowellSabinNet) {
+  PowellSabinNet net = place_powell_sabin(testing::ring_net(2, 0.3, true).mesh);
+  for (auto& q : net.triangles[5]) q = net.mesh.vertices[5] + 1.25 * (q - net.mesh.vertices[5]);
+  save_transform(SplineTransform<2>(std::make_shared<PowellSabinBasis>(net)), file());
+  const auto loaded = load_transform<2>(file());
+  const auto& again = dynamic_cast<const PowellSabinBasis&>(
+                          dynamic_cast<const SplineTransform<2>&>(*loaded).basis())
+                          .net();
+  EXPECT_EQ(again.mesh.vertices, net.mesh.vertices);
+  EXPECT_EQ(again.mesh.simplices, net.mesh.simplices);
+  EXPECT_EQ(again.mesh.regions, net.mesh.regions);
+  EXPECT_EQ(again.triangles, net.triangles);
+
+  change("\"triangles\": [", "\"triangles\": [1, 2,");
+  expect_error("\"basis.triangles\" does not have three points per vertex");
+  save_transform(SplineTransform<2>(std::make_shared<PowellSabinBasis>(net)), file());
+  change("\"simplices\": [", "\"simplices\": [[0, 1, 2],");
+  expect_error("does not have one number per simplex");
 }
 
 TEST_F(TransformFile, PeekTellsDimensionsAndType) {

@@ -9,6 +9,7 @@
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/TransformFile.h"
 
@@ -64,6 +65,16 @@ struct TriangularSpline {
   }
 };
 
+/// Over the same 40 x 40 mm.
+struct PowellSabinSpline {
+  static constexpr int kIn = 2, kOut = 2;
+  static std::unique_ptr<Transform<2>> make() {
+    auto mesh = testing::jittered_mesh(4, 4, 7);
+    for (auto& v : mesh.vertices) v += Vector<2>(-12, -13);
+    return std::make_unique<SplineTransform<2>>(std::make_shared<PowellSabinBasis>(mesh));
+  }
+};
+
 struct TensorShell {
   static constexpr int kIn = 2, kOut = 3;
   static std::unique_ptr<Transform<2, 3>> make() {
@@ -105,8 +116,8 @@ class TransformSuite : public ::testing::Test {
 
 using Kinds = ::testing::Types<Affine<2>, Affine<3>, Rigid<2>, Rigid<3>, TensorSpline<2, 2>,
                                TensorSpline<2, 3>, TensorSpline<2, 5>, TensorSpline<3, 3>,
-                               TriangularSpline<2>, TriangularSpline<3>, TensorShell, Composite<2>,
-                               Composite<3>>;
+                               TriangularSpline<2>, TriangularSpline<3>, PowellSabinSpline,
+                               TensorShell, Composite<2>, Composite<3>>;
 TYPED_TEST_SUITE(TransformSuite, Kinds);
 
 TYPED_TEST(TransformSuite, IsTheIdentityAtRest) {

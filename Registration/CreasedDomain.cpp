@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Registration/LandmarkRefinement.h"
 #include "Transforms/Domains/LabelOutlines.h"
 #include "Transforms/Domains/Mesher.h"
+#include "Transforms/Splines/KnotLocator.h"
+#include "Transforms/Splines/PowellSabinBasis.h"
 
 namespace crease {
 namespace {
@@ -22,6 +25,16 @@ void append(std::vector<std::string>& texts, const std::vector<std::string>& mor
   texts.insert(texts.end(), more.begin(), more.end());
 }
 
+void add_triangular_basis(const CreasedDomainOptions& options, CreasedDomain& domain) {
+  PlacedKnots knots =
+      place_knots(domain.mesh, {.degree = options.degree,
+                                .smoothness = options.smoothness,
+                                .creases = options.creases,
+                                .collapse_inside_bodies = options.creases && options.rigid_bodies});
+  domain.plan = std::move(knots.plan);
+  domain.basis = std::make_shared<const TriangularBSplineBasis<2>>(std::move(knots.net));
+}
+
 CreasedDomain domain_with_discs(const RegionOfInterest& region,
                                 const std::vector<FeatureLine>& lines,
                                 const CreasedDomainOptions& options,
@@ -35,13 +48,11 @@ CreasedDomain domain_with_discs(const RegionOfInterest& region,
                              .fine_discs = discs,
                              .num_triangles = options.num_triangles,
                              .line_tolerance = options.line_tolerance});
-  PlacedKnots knots =
-      place_knots(domain.mesh, {.degree = options.degree,
-                                .smoothness = options.smoothness,
-                                .creases = options.creases,
-                                .collapse_inside_bodies = options.creases && options.rigid_bodies});
-  domain.plan = std::move(knots.plan);
-  domain.basis = std::make_shared<const TriangularBSplineBasis<2>>(std::move(knots.net));
+  if (options.spline == TriangleSpline::kPowellSabin) {
+    domain.basis = std::make_shared<const PowellSabinBasis>(domain.mesh.mesh);
+  } else {
+    add_triangular_basis(options, domain);
+  }
   domain.notes = domain.mesh.notes;
   domain.warnings = domain.mesh.warnings;
   append(domain.warnings, domain.plan.warnings);
@@ -52,6 +63,14 @@ CreasedDomain domain_with_discs(const RegionOfInterest& region,
 
 bool CreasedDomain::has_bodies() const {
   return std::ranges::any_of(mesh.mesh.regions, [](int region) { return region > 0; });
+}
+
+const TriangularBSplineBasis<2>& CreasedDomain::triangular_basis() const {
+  const auto* triangular = dynamic_cast<const TriangularBSplineBasis<2>*>(basis.get());
+  if (triangular == nullptr) {
+    throw InvalidInput("CreasedDomain: its splines are no triangular B-splines.");
+  }
+  return *triangular;
 }
 
 CreasedDomain make_creased_domain(const RegionOfInterest& region,
@@ -83,11 +102,11 @@ CreasedDomain make_creased_domain(const RegionOfInterest& region, const LabelIma
 LabelImage<2> body_labels(const CreasedDomain& domain, const Raster<2>& raster) {
   LabelImage<2> labels(raster);
   const Vector<2> step = raster.index_to_point().col(0);
+  const KnotLocator<2> locator(domain.mesh.mesh, kKnotTie * mesh_scale(domain.mesh.mesh));
   parallel_for(raster.num_rows(), [&](std::int64_t r) {
     const auto row = labels.row(r);
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const int simplex =
-          domain.basis->find_simplex(raster.row_start(r) + static_cast<double>(i) * step);
+      const int simplex = locator.find(raster.row_start(r) + static_cast<double>(i) * step);
       if (simplex >= 0) row[i] = domain.mesh.mesh.region(simplex);
     }
   });

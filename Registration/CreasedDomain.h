@@ -16,8 +16,18 @@
 
 namespace crease {
 
+/// Splines on triangles.
+enum class TriangleSpline {
+  kTriangular,  ///< triangular B-splines, with creases along lines
+  /// Powell-Sabin splines: C1 quadratics that bend as they should with a third of the control points of
+  /// cubics. Lines are edges of the mesh and bodies its regions, but the spline is smooth across them.
+  kPowellSabin
+};
+
 /// How fine a creased domain is and how smooth its splines are. Lengths in mm, 0 asks for the default.
 struct CreasedDomainOptions {
+  /// With kPowellSabin degree, smoothness, creases and rigid_bodies do not matter.
+  TriangleSpline spline = TriangleSpline::kTriangular;
   int degree = 3;
   int smoothness = -1;  ///< continuous derivatives away from creases; -1: degree - 1
   bool creases = true;  ///< false: lines stay edges of the mesh, the spline is smooth across them
@@ -39,16 +49,18 @@ struct CreasedDomainOptions {
   Landmarks<2> landmarks = {};
 };
 
-/// A triangulated region, its feature lines and the triangular B-splines on it.
+/// A triangulated region, its feature lines and the splines on it.
 struct CreasedDomain {
-  std::shared_ptr<const TriangularBSplineBasis<2>> basis;
+  std::shared_ptr<const SplineBasis<2>> basis;
   DomainMesh mesh;   ///< as triangulated; its regions are body labels
-  FeaturePlan plan;  ///< what became of the knots of each vertex
+  FeaturePlan plan;  ///< what became of the knots of each vertex; empty for Powell-Sabin splines
   std::vector<FeatureLine> feature_lines;
   std::vector<std::string> notes;     ///< what was merged, clipped, split
   std::vector<std::string> warnings;  ///< what the user should look at
 
   bool has_bodies() const;
+  /// @throws InvalidInput when the splines are others.
+  const TriangularBSplineBasis<2>& triangular_basis() const;
 };
 
 /// Meshes a region so that the lines run along edges, and puts knots on its vertices so that the spline

@@ -4,6 +4,7 @@
 
 #include "Core/Error.h"
 #include "Registration/LandmarkConstraints.h"
+#include "Transforms/Splines/KnotLocator.h"
 
 namespace crease {
 namespace {
@@ -12,9 +13,10 @@ constexpr int kMostRounds = 4;
 constexpr double kWantedStrain = 10;  // once triangles are divided
 
 /// The disc round the triangle that holds p, with half the mean of its edges.
-FineDisc halved_triangle(const TriangularBSplineBasis<2>& basis, const Point<2>& p) {
-  const SimplexMesh<2>& mesh = basis.net().mesh;
-  const auto& corners = mesh.simplices[static_cast<std::size_t>(basis.find_simplex(p))];
+FineDisc halved_triangle(const CreasedDomain& domain, const Point<2>& p) {
+  const SimplexMesh<2>& mesh = domain.mesh.mesh;
+  const KnotLocator<2> locator(mesh, kKnotTie * mesh_scale(mesh));
+  const auto& corners = mesh.simplices[static_cast<std::size_t>(locator.find(p))];
   FineDisc disc;
   for (int k = 0; k < 3; ++k) {
     const Point<2>&a = mesh.vertices[corners[k]], &b = mesh.vertices[corners[(k + 1) % 3]];
@@ -53,7 +55,7 @@ CreasedDomain refined_for_landmarks(const Landmarks<2>& landmarks, const DomainM
   const auto mean_edge = [&] {
     double sum = 0;
     for (int j : done.landmarks) {
-      sum += 2 * halved_triangle(*domain.basis, landmarks.fixed[j]).edge_length;
+      sum += 2 * halved_triangle(domain, landmarks.fixed[j]).edge_length;
     }
     return sum / static_cast<double>(done.landmarks.size());
   };
@@ -69,7 +71,7 @@ CreasedDomain refined_for_landmarks(const Landmarks<2>& landmarks, const DomainM
       done.old_length = mean_edge();
       done.old_triangles = domain.mesh.mesh.simplices.size();
     }
-    for (int j : cluster) discs.push_back(halved_triangle(*domain.basis, landmarks.fixed[j]));
+    for (int j : cluster) discs.push_back(halved_triangle(domain, landmarks.fixed[j]));
     domain = make(discs);
     ++done.rounds;
     found = find_contradiction(landmarks, *domain.basis, kExact);

@@ -73,7 +73,7 @@ TEST(LandmarkConstraints, RowsSumToOneOnKnotLines) {
       places.emplace_back((1 - share) * mesh.vertices[s[0]] + share * mesh.vertices[s[1]]);
     }
   }
-  for (const auto& cloud : domain.basis->net().clouds) {
+  for (const auto& cloud : domain.triangular_basis().net().clouds) {
     for (const auto& knot : cloud) {
       if (domain.basis->contains(knot)) places.push_back(knot);
     }

@@ -84,7 +84,7 @@ TEST(LandmarkRefinement, KeepsCreasesOnTheirLines) {
   for (int e = 0; e < chain.num_edges(); ++e) {
     EXPECT_GE(topology.edge_between(chain.vertices[e], chain.vertices[e + 1]), 0);
     // A vertex on the line, and all of its knots: the crease is exact.
-    for (const auto& knot : domain.basis->net().clouds[chain.vertices[e]]) {
+    for (const auto& knot : domain.triangular_basis().net().clouds[chain.vertices[e]]) {
       if (e > 0) EXPECT_NEAR(knot.y(), 30, 1e-12);
     }
   }

@@ -17,10 +17,8 @@ namespace {
 /// Three bodies that move on their own, with creases along their outlines.
 struct Bodies {
   Phantom phantom = make_phantom("bodies", {.size = 96});
-  std::shared_ptr<const TriangularBSplineBasis<2>> basis =
-      make_creased_domain(rectangle_of(phantom.fixed.raster()), phantom.labels, {},
-                          {.edge_length = 40, .edge_length_near_lines = 16})
-          .basis;
+  CreasedDomain domain = make_creased_domain(rectangle_of(phantom.fixed.raster()), phantom.labels,
+                                             {}, {.edge_length = 40, .edge_length_near_lines = 16});
 };
 
 /// A problem that exists in several equivalent forms.
@@ -43,7 +41,7 @@ struct Problem {
 
 Problem problem() {
   const Bodies bodies;
-  return {bodies.phantom.fixed, bodies.phantom.moving, bodies.basis->net(),
+  return {bodies.phantom.fixed, bodies.phantom.moving, bodies.domain.triangular_basis().net(),
           bodies.phantom.landmarks};
 }
 
@@ -145,7 +143,7 @@ TEST(RegistrationInvariance, ThreadsDoNotChangeABitOfCreasedMaps) {
   expect_same_bytes([] {  // meshing and binding included
     const Bodies bodies;
     return Registration<2>(bodies.phantom.fixed, bodies.phantom.moving)
-        .basis(bodies.basis)
+        .basis(bodies.domain.basis)
         .alignment({.search = AlignmentSearch::kRigid})
         .energy("bending", 0.1, bending<2>(body_weights<2>()))
         .energy("rigidity", 1, rigidity<2>())

@@ -27,7 +27,13 @@ struct Triangles {
     return testing::triangles_over(box, {.degree = 3}, 5);
   }
 };
-using Kinds = ::testing::Types<Tensor<2>, Tensor<3>, Triangles>;
+struct PowellSabin {
+  static constexpr int kDim = 2, kSize = 128;
+  static std::shared_ptr<const SplineBasis<2>> basis(const Box<2>& box) {
+    return std::make_shared<PowellSabinBasis>(structured_triangulation(box, 6, 6));
+  }
+};
+using Kinds = ::testing::Types<Tensor<2>, Tensor<3>, Triangles, PowellSabin>;
 
 template <typename Kind>
 class RegistrationRecovery : public ::testing::Test {

@@ -4,12 +4,11 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
-#include "Transforms/BoundGrid.h"
 #include "Transforms/Domains/DomainMesh.h"
-#include "Transforms/SparseRowGrid.h"
 #include "Transforms/Splines/KnotBorder.h"
 #include "Transforms/Splines/KnotCellRule.h"
 #include "Transforms/Splines/KnotLocator.h"
+#include "Transforms/Splines/PowellSabinGrid.h"
 #include "Transforms/Splines/SimplexSpline.h"
 
 namespace crease {
@@ -194,7 +193,7 @@ std::vector<std::pair<int, int>> PowellSabinBasis::couplings() const {
 }
 
 std::unique_ptr<BoundGrid<2>> PowellSabinBasis::bind(const Raster<2>& raster) const {
-  return std::make_unique<SparseRowGrid<2>>(*this, raster);
+  return std::make_unique<PowellSabinGrid>(*this, raster);
 }
 
 }  // namespace crease

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <map>
 
-#include "Core/Cpu.h"
-#include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
-#include "Transforms/Splines/TriangularBSplineGridKernels.h"
 
 namespace crease {
 namespace {
-
-constexpr std::uint16_t kNone = 0xffff;  // functions of a group that do not meet have no entry
 
 // The sets of control points that blocks are grouped by: one per triangle, per edge, per vertex.
 class PointSets {
@@ -88,9 +83,8 @@ struct Member {
 
 }  // namespace
 
-TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBasis<2>& basis,
-                                                       std::span<const BlockSamples* const> parts)
-    : pattern_(basis.pattern()) {
+CurvatureGroups curvature_groups(const TriangularBSplineBasis<2>& basis,
+                                 std::span<const BlockSamples* const> parts) {
   const PointSets sets(basis);
   std::vector<std::vector<Member>> fixed(sets.num_fixed());
   std::map<std::vector<int>, std::vector<Member>> others;  // clouds that reach past the neighbours
@@ -102,21 +96,19 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
       members.push_back({part, &sample});
     }
   }
+  std::vector<CurvatureGroups::Group> groups;
   std::vector<const std::vector<Member>*> members;
-  for (int s = 0; s < sets.num_fixed(); ++s) {
-    if (fixed[s].empty()) continue;
-    groups_.push_back({sets.set(s), 0, {}, {}, {}});
-    members.push_back(&fixed[s]);
-  }
-  for (const auto& [points, of_set] : others) {
-    groups_.push_back({points, 0, {}, {}, {}});
+  const auto add_group = [&](const std::vector<int>& points, const std::vector<Member>& of_set) {
+    groups.emplace_back().set_control_points(points, of_set.size());
     members.push_back(&of_set);
+  };
+  for (int s = 0; s < sets.num_fixed(); ++s) {
+    if (!fixed[s].empty()) add_group(sets.set(s), fixed[s]);
   }
-  parallel_for(std::ssize(groups_), [&](std::int64_t g) {
-    Group& group = groups_[g];
+  for (const auto& [points, of_set] : others) add_group(points, of_set);
+  parallel_for(std::ssize(groups), [&](std::int64_t g) {
+    CurvatureGroups::Group& group = groups[g];
     const auto& points = group.control_points;
-    group.stride = (static_cast<int>(points.size()) + 7) / 8 * 8;
-    group.weights.assign(members[g]->size() * group.stride, 0.0f);
     float* row = group.weights.data();
     const auto place = [&](int point) {
       return std::lower_bound(points.begin(), points.end(), point) - points.begin();
@@ -136,81 +128,8 @@ TriangularBSplineCurvature::TriangularBSplineCurvature(const TriangularBSplineBa
       }
       row += group.stride;
     }
-    find_columns(group);
   });
-  places_.resize(basis.num_control_points());
-  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
-    const auto& points = groups_[g].control_points;
-    for (int k = 0; k < static_cast<int>(points.size()); ++k) places_[points[k]].push_back({g, k});
-  }
-}
-
-void TriangularBSplineCurvature::add(const CurvatureBlocks<2>& blocks, double scale,
-                                     BlockHessian<2>& hessian) const {
-  const HessianPattern& pattern = hessian.pattern();
-  if (&pattern != pattern_.get() &&
-      (pattern.row_start() != pattern_->row_start() || pattern.columns() != pattern_->columns())) {
-    throw InvalidInput("curvature of a triangular B-spline: the Hessian has another pattern");
-  }
-  const auto kernel = cpu_has_avx2() ? avx2::grid_block_products : baseline::grid_block_products;
-  std::vector<std::vector<float>> sums(groups_.size());
-  parallel_for(std::ssize(groups_), [&](std::int64_t g) {
-    const Group& group = groups_[g];
-    const auto size = group.control_points.size();
-    sums[g].assign(size * 3 * group.stride, 0.0f);
-    kernel(group.weights.data(), group.blocks.data(), static_cast<int>(group.blocks.size()),
-           static_cast<int>(size), group.stride, blocks.sums[0].data(), blocks.sums[1].data(),
-           blocks.sums[2].data(), sums[g].data());
-  });
-  constexpr int kRowsAtOnce = 64;
-  const int rows = static_cast<int>(places_.size());
-  parallel_for((rows + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t part) {
-    const int first = static_cast<int>(part) * kRowsAtOnce;
-    for (int i = first; i < std::min(rows, first + kRowsAtOnce); ++i) {
-      add_row(i, sums, scale, hessian);
-    }
-  });
-}
-
-void TriangularBSplineCurvature::find_columns(Group& group) const {
-  const auto& points = group.control_points;
-  group.columns.reserve(points.size() * (points.size() + 1) / 2);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto begin = pattern_->columns().begin() + pattern_->row_start()[points[i]];
-    const auto end = pattern_->columns().begin() + pattern_->row_start()[points[i] + 1];
-    auto column = begin;
-    for (std::size_t k = 0; k <= i; ++k) {
-      while (column != end && *column < points[k]) ++column;
-      const bool found = column != end && *column == points[k];
-      group.columns.push_back(found ? static_cast<std::uint16_t>(column - begin) : kNone);
-    }
-  }
-}
-
-// Each row of the Hessian belongs to one call: its groups are added in their order.
-void TriangularBSplineCurvature::add_row(int control_point,
-                                         const std::vector<std::vector<float>>& sums, double scale,
-                                         BlockHessian<2>& hessian) const {
-  const int row_start = pattern_->row_start()[control_point];
-  for (const auto& [g, position] : places_[control_point]) {
-    const Group& group = groups_[g];
-    const float* s = &sums[g][static_cast<std::size_t>(3) * position * group.stride];
-    const std::uint16_t* columns =
-        &group.columns[static_cast<std::size_t>(position) * (position + 1) / 2];
-    for (int k = 0; k <= position; ++k) {
-      const double xx = s[k], xy = s[group.stride + k], yy = s[2 * group.stride + k];
-      if (columns[k] == kNone) {
-        if (xx != 0.0 || yy != 0.0)
-          pattern_->slot(control_point, group.control_points[k]);  // throws
-        continue;
-      }
-      Matrix<2>& block = hessian.block(row_start + columns[k]);
-      block(0, 0) += scale * xx;
-      block(0, 1) += scale * xy;
-      block(1, 0) += scale * xy;
-      block(1, 1) += scale * yy;
-    }
-  }
+  return {basis.pattern(), std::move(groups)};
 }
 
 }  // namespace crease

@@ -77,7 +77,7 @@ TriangularBSplineGrid::TriangularBSplineGrid(const TriangularBSplineBasis<2>& ba
   });
   std::vector<const BlockSamples*> parts;
   for (const RowBand& band : bands_) parts.push_back(&band.blocks);
-  curvature_ = std::make_unique<TriangularBSplineCurvature>(basis, parts);
+  curvature_ = std::make_unique<CurvatureGroups>(curvature_groups(basis, parts));
   for (RowBand& band : bands_) band.blocks = {};
 }
 

@@ -55,7 +55,7 @@ class TriangularBSplineGrid final : public BoundGrid<2> {
   std::vector<Eigen::MatrixXd> power_forms_;  // in index coordinates
   std::vector<GridPatch> patches_;
   std::vector<RowBand> bands_;
-  std::unique_ptr<TriangularBSplineCurvature> curvature_;
+  std::unique_ptr<CurvatureGroups> curvature_;
 };
 
 }  // namespace crease

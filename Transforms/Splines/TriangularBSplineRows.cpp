@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "Core/Parallel.h"
+#include "Transforms/Splines/BlockSampling.h"
 #include "Transforms/Splines/KnotLocator.h"
 #include "Transforms/Splines/KnotRaster.h"
 #include "Transforms/Splines/TriangularBSplineEvaluator.h"
@@ -262,54 +262,19 @@ class BandBuilder {
   // How far apart the samples may lie that stand for a block: functions of narrow triangles, and those in
   // strips, vary within few samples.
   int sampling_of(const Sample& s) const {
-    const double spacing = triangles_[s.owner].control_spacing * (s.core ? 1.0 : kStripFineness);
-    constexpr int kHalf = kBlock / 2;
-    return spacing >= kBlock ? kBlock : spacing >= kHalf ? kHalf : 1;
+    return block_sampling(triangles_[s.owner].control_spacing * (s.core ? 1.0 : kStripFineness));
   }
 
   // Each block's basis at the middle samples of its squares of `sampling` samples a side.
   void add_blocks(RowBand& band) {
     const int num_blocks = (raster_.size[0] + kBlock - 1) / kBlock;
-    for (int b = 0; b < num_blocks; ++b) {
-      const int columns = std::min(kBlock, raster_.size[0] - b * kBlock);
-      int sampling = kBlock, covered = 0;
-      for (int r = 0; r < num_rows_; ++r) {
-        for (int c = 0; c < columns; ++c) {
-          const Sample& s = sample(r, b * kBlock + c);
-          if (s.owner < 0) continue;
-          ++covered;
-          sampling = std::min(sampling, sampling_of(s));
-        }
-      }
-      const int block = (first_row_ / kBlock) * num_blocks + b;
-      for (int r = 0; r < num_rows_ && covered > 0; r += sampling) {
-        for (int c = 0; c < columns; c += sampling) {
-          add_square(block, r, b * kBlock + c, sampling, covered, band.blocks);
-        }
-      }
-    }
-  }
-
-  // The covered sample nearest to the middle of a square stands for all that are covered.
-  void add_square(int block, int row, int column, int width, int covered, BlockSamples& blocks) {
-    const int last_row = std::min(row + width, num_rows_);
-    const int last_column = std::min(column + width, raster_.size[0]);
-    int count = 0, best_row = 0, best_column = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (int r = row; r < last_row; ++r) {
-      for (int c = column; c < last_column; ++c) {
-        if (sample(r, c).owner < 0) continue;
-        ++count;
-        const double distance = std::hypot(r - row - width / 2.0, c - column - width / 2.0);
-        if (distance >= least) continue;
-        least = distance;
-        best_row = r;
-        best_column = c;
-      }
-    }
-    if (count == 0) return;
-    add_block(block, best_row, best_column,
-              static_cast<float>(std::sqrt(static_cast<double>(count) / covered)), blocks);
+    choose_block_samples(
+        num_rows_, raster_.size[0], [&](int r, int i) { return sample(r, i).owner >= 0; },
+        [&](int r, int i) { return sampling_of(sample(r, i)); },
+        [&](int block, int r, int i, double share) {
+          add_block((first_row_ / kBlock) * num_blocks + block, r, i,
+                    static_cast<float>(std::sqrt(share)), band.blocks);
+        });
   }
 
   void add_block(int block, int r, int i, float root_share, BlockSamples& blocks) {

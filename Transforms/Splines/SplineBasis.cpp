@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "Core/Error.h"
+#include "Transforms/Splines/DeterminantPieces.h"
 
 namespace crease {
 
@@ -42,6 +43,12 @@ std::shared_ptr<const HessianPattern> SplineBasis<Dim>::pattern() const {
         std::make_shared<const HessianPattern>(num_control_points(), couplings());
   });
   return kept_pattern_->pattern;
+}
+
+template <int Dim>
+std::unique_ptr<DeterminantPieces<Dim>> SplineBasis<Dim>::determinant_pieces(
+    const ControlPoints<Dim>&, const Matrix<Dim>&) const {
+  return nullptr;
 }
 
 template class SplineBasis<2>;

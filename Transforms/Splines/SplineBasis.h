@@ -17,6 +17,8 @@ namespace crease {
 
 template <int Dim>
 class BoundGrid;
+template <int Dim>
+class DeterminantPieces;
 
 /// Number of distinct second derivatives: xx, xy, yy (2D); xx, xy, xz, yy, yz, zz (3D).
 template <int Dim>
@@ -90,6 +92,11 @@ class SplineBasis {
   virtual std::vector<std::pair<int, int>> couplings() const = 0;
   /// The same as a pattern, made at the first call and kept.
   std::shared_ptr<const HessianPattern> pattern() const;
+  /// det grad T of T(x) = linear x + sum_i phi_i B_i(x), polynomial by polynomial, for certificates. All
+  /// arguments and the basis must outlive the result. Null unless overridden: not available.
+  /// @param phi  Dim x num_control_points(), mm.
+  virtual std::unique_ptr<DeterminantPieces<Dim>> determinant_pieces(
+      const ControlPoints<Dim>& phi, const Matrix<Dim>& linear) const;
   /// Prepares the basis for all samples of a raster. Samples outside the domain are not covered.
   virtual std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const = 0;
 

@@ -7,6 +7,7 @@
 #include "Transforms/GaussRule.h"
 #include "Transforms/SparseRowGrid.h"
 #include "Transforms/Splines/TensorBSplineGrid.h"
+#include "Transforms/Splines/TensorBSplinePieces.h"
 
 namespace crease {
 namespace {
@@ -334,6 +335,12 @@ std::vector<std::pair<int, int>> TensorBSplineBasis<Dim>::couplings() const {
     }
   }
   return pairs;
+}
+
+template <int Dim>
+std::unique_ptr<DeterminantPieces<Dim>> TensorBSplineBasis<Dim>::determinant_pieces(
+    const ControlPoints<Dim>& phi, const Matrix<Dim>& linear) const {
+  return std::make_unique<TensorBSplinePieces<Dim>>(lattice_, degree_, phi, linear);
 }
 
 template <int Dim>

@@ -61,6 +61,8 @@ class TensorBSplineBasis final : public SplineBasis<Dim> {
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const override;
   std::vector<std::pair<int, int>> couplings() const override;
+  std::unique_ptr<DeterminantPieces<Dim>> determinant_pieces(
+      const ControlPoints<Dim>& phi, const Matrix<Dim>& linear) const override;
   /// Rows are separable when the raster's axes run along the lattice's (TensorBSplineGrid); any other
   /// raster gets tables of weights (SparseRowGrid).
   std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const override;

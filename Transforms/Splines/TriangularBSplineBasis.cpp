@@ -14,6 +14,7 @@
 #include "Transforms/Splines/SimplexSplineGraph.h"
 #include "Transforms/Splines/TriangularBSplineEvaluator.h"
 #include "Transforms/Splines/TriangularBSplineGrid.h"
+#include "Transforms/Splines/TriangularBSplinePieces.h"
 #include "Transforms/Splines/TriangularBSplineQuadrature.h"
 
 namespace crease {
@@ -288,6 +289,17 @@ std::vector<std::pair<int, int>> TriangularBSplineBasis<Dim>::couplings() const 
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return pairs;
+  }
+}
+
+template <int Dim>
+std::unique_ptr<DeterminantPieces<Dim>> TriangularBSplineBasis<Dim>::determinant_pieces(
+    const ControlPoints<Dim>& phi, const Matrix<Dim>& linear) const {
+  if constexpr (Dim == 3) {
+    return nullptr;
+  } else {
+    return std::make_unique<TriangularBSplinePieces>(net_, control_points_, *evaluator_,
+                                                     quadrature_->cells(), phi, linear);
   }
 }
 

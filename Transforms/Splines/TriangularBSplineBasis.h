@@ -69,6 +69,8 @@ class TriangularBSplineBasis final : public SplineBasis<Dim> {
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const override;
   std::vector<std::pair<int, int>> couplings() const override;
+  std::unique_ptr<DeterminantPieces<Dim>> determinant_pieces(
+      const ControlPoints<Dim>& phi, const Matrix<Dim>& linear) const override;
   std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const override;
 
  private:

@@ -1,0 +1,141 @@
+#include "Transforms/Energies/FoldingEnergy.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "Core/Error.h"
+#include "Core/Parallel.h"
+
+namespace crease {
+namespace {
+
+/// d det F / dF.
+Matrix<2> cofactors(const Matrix<2>& f) {
+  Matrix<2> c;
+  c << f(1, 1), -f(1, 0), -f(0, 1), f(0, 0);
+  return c;
+}
+Matrix<3> cofactors(const Matrix<3>& f) {
+  Matrix<3> c;
+  c << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
+  return c;
+}
+
+}  // namespace
+
+/// What one element adds.
+template <int Dim>
+struct FoldingEnergy<Dim>::Part {
+  double energy = 0;
+  ControlPoints<Dim> gradient;  // empty where the element adds nothing
+  Eigen::MatrixXd hessian;      // lower triangle, likewise
+
+  Part& operator+=(const Part& other) {
+    energy += other.energy;
+    return *this;
+  }
+};
+
+template <int Dim>
+FoldingEnergy<Dim>::FoldingEnergy(const SplineBasis<Dim>& basis, const AffineMap<Dim>& affine,
+                                  const FoldingOptions& options)
+    : threshold_(options.threshold),
+      linear_(affine.linear),
+      num_control_points_(basis.num_control_points()) {
+  if (!(threshold_ > 0)) {
+    throw InvalidInput(
+        message("FoldingEnergy: the threshold is ", threshold_, "; it must be positive."));
+  }
+  if (!affine.finite()) throw InvalidInput("FoldingEnergy: the affine part is not finite.");
+  const int degree =
+      options.quadrature_degree >= 0 ? options.quadrature_degree : basis.product_degree(Dim, 1);
+  elements_ = basis.quadrature(degree, 1, options.wanted);
+  for (auto& element : elements_) {
+    element.points.resize(Dim, 0);
+    element.values.resize(0, 0);
+  }
+}
+
+template <int Dim>
+typename FoldingEnergy<Dim>::Part FoldingEnergy<Dim>::evaluate_element(
+    const QuadratureElement<Dim>& element, const Eigen::Ref<const ControlPoints<Dim>>& phi,
+    bool with_gradient, bool with_hessian) const {
+  const ControlPoints<Dim> local = phi(Eigen::all, element.control_points);
+  std::array<ControlPoints<Dim>, Dim> columns;  // of F, by point
+  for (int a = 0; a < Dim; ++a) {
+    columns[a].noalias() = local * element.gradients[a];
+    columns[a].colwise() += linear_.col(a);
+  }
+  Part part;
+  const Eigen::Index k = local.cols();
+  for (Eigen::Index q = 0; q < element.weights.size(); ++q) {
+    Matrix<Dim> f;
+    for (int a = 0; a < Dim; ++a) f.col(a) = columns[a].col(q);
+    const double s = 1 - f.determinant() / threshold_, w = element.weights[q];
+    if (!(s > 0)) {
+      if (std::isnan(s)) part.energy = s;
+      continue;
+    }
+    part.energy += w * s * s * s;
+    if (!with_gradient && !with_hessian) continue;
+    ControlPoints<Dim> slopes(Dim, k);  // of det F: cof F grad B_i
+    Matrix<Dim> cofactor = cofactors(f);
+    slopes.noalias() = cofactor.col(0) * element.gradients[0].col(q).transpose();
+    for (int a = 1; a < Dim; ++a) {
+      slopes.noalias() += cofactor.col(a) * element.gradients[a].col(q).transpose();
+    }
+    if (with_gradient) {
+      if (part.gradient.size() == 0) part.gradient.setZero(Dim, k);
+      part.gradient -= 3 * w * s * s / threshold_ * slopes;
+    }
+    if (with_hessian) {
+      if (part.hessian.size() == 0) part.hessian.setZero(Dim * k, Dim * k);
+      part.hessian.template selfadjointView<Eigen::Lower>().rankUpdate(
+          slopes.reshaped(), 6 * w * s / (threshold_ * threshold_));
+    }
+  }
+  return part;
+}
+
+template <int Dim>
+double FoldingEnergy<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
+                                    ControlPoints<Dim>* gradient,
+                                    BlockHessian<Dim>* hessian) const {
+  if (phi.cols() != num_control_points_) {
+    throw InvalidInput(message("FoldingEnergy: ", phi.cols(), " control points given, ",
+                               num_control_points_, " expected."));
+  }
+  constexpr std::size_t kChunk = 1024;  // elements whose matrices wait to be added in order
+  double energy = 0;
+  for (std::size_t begin = 0; begin < elements_.size(); begin += kChunk) {
+    std::vector<Part> parts(std::min(kChunk, elements_.size() - begin));
+    parallel_for(std::ssize(parts), [&](std::int64_t n) {
+      parts[n] =
+          evaluate_element(elements_[begin + n], phi, gradient != nullptr, hessian != nullptr);
+    });
+    for (std::size_t n = 0; n < parts.size(); ++n) {
+      const Part& part = parts[n];
+      const auto& numbers = elements_[begin + n].control_points;
+      energy += part.energy;
+      for (Eigen::Index i = 0; gradient && i < part.gradient.cols(); ++i) {
+        gradient->col(numbers[i]) += scale * part.gradient.col(i);
+      }
+      for (Eigen::Index i = 0; hessian && i < part.hessian.rows() / Dim; ++i) {
+        for (Eigen::Index j = 0; j < i; ++j) {
+          hessian->add(numbers[i], numbers[j],
+                       scale * part.hessian.template block<Dim, Dim>(Dim * i, Dim * j));
+        }
+        const Matrix<Dim> lower = part.hessian.template block<Dim, Dim>(Dim * i, Dim * i);
+        const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();
+        hessian->add(numbers[i], numbers[i], scale * diagonal);
+      }
+    }
+  }
+  return energy;
+}
+
+template class FoldingEnergy<2>;
+template class FoldingEnergy<3>;
+
+}  // namespace crease

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
 #include "Applications/InputFiles.h"
 #include "Applications/OutputFolder.h"
@@ -163,18 +164,26 @@ ExitCode evaluate_files(const EvaluateCommand& command, const std::string& confi
   }
   input.landmarks = files.landmarks;
   const Evaluation<Dim> evaluation = evaluate(input);
+  std::optional<InvertibilityCertificate<Dim>> certificate;
+  if (files.transform) certificate = certify_invertibility(*files.transform);
   if (evaluation.jacobian.folded > 0) {
     report.add_warning(folding_text(evaluation.jacobian, evaluation.samples) + ".");
   }
   report.end_stage("evaluation");
   for (const std::string& warning : report.warnings()) progress.warn(warning);
-  const std::string json = report.to_json("ok", to_json(evaluation));
+  auto figures = to_json(evaluation);
+  std::string text = summary(evaluation);
+  if (certificate) {
+    add_certificate(*certificate, figures["jacobian"]);
+    text += "invertible             " + certificate_text(*certificate) + "\n";
+  }
+  const std::string json = report.to_json("ok", figures);
   if (command.output) {
     const OutputFolder output(*command.output);
     output.write_text("config.toml", config);
     output.finish(json);
   }
-  std::cout << (command.run.json ? json : summary(evaluation));
+  std::cout << (command.run.json ? json : text);
   return ExitCode::kSuccess;
 }
 

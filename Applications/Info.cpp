@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "Applications/CertificateReport.h"
 #include "Applications/InputFiles.h"
 #include "Applications/RunOptions.h"
 #include "Applications/RunReport.h"
@@ -142,10 +143,17 @@ FileInfo transform_info(const std::string& file) {
                     {"out_dimension", info.out_dim}};
   result.text = fmt::format("{} transform, {}D to {}D\n", info.type, info.in_dim, info.out_dim);
   if (info.in_dim != info.out_dim) return result;
+  const auto describe = [&](const auto& transform) {
+    describe_transform(transform, result.figures, result.text);
+    const auto certificate = certify_invertibility(transform);
+    result.figures["jacobian"] = Json::object();
+    add_certificate(certificate, result.figures["jacobian"]);
+    result.text += "invertible: " + certificate_text(certificate) + "\n";
+  };
   if (info.in_dim == 2) {
-    describe_transform(*load_transform<2>(file), result.figures, result.text);
+    describe(*load_transform<2>(file));
   } else {
-    describe_transform(*load_transform<3>(file), result.figures, result.text);
+    describe(*load_transform<3>(file));
   }
   return result;
 }

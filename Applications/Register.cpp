@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
 #include "Applications/RegisterInput.h"
 #include "Applications/RegisterOptions.h"
@@ -66,7 +67,8 @@ Json levels_json(const std::vector<LevelReport>& levels) {
 
 template <int Dim>
 Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                  const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation) {
+                  const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation,
+                  const InvertibilityCertificate<Dim>& certificate) {
   const LandmarkErrors landmarks = landmark_errors(input.landmarks, *outcome.transform);
   Json json;
   json["metric"] = {
@@ -93,6 +95,8 @@ Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& inpu
   json["control_points"] = outcome.control_points;
   json["free_parameters"] = outcome.free_parameters;
   json["jacobian"] = to_json(evaluation.jacobian);
+  add_certificate(certificate, json["jacobian"]);
+  if (outcome.unfolding) json["unfolding"] = to_json(*outcome.unfolding);
   json["landmarks"] = {{"count", input.landmarks.size()},
                        {"max_error_mm", landmarks.largest},
                        {"rms_error_mm", landmarks.rms},
@@ -109,7 +113,7 @@ Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& inpu
 template <int Dim>
 std::string summary_text(const RegisterOptions& options, const RegisterInput<Dim>& input,
                          const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation,
-                         double seconds) {
+                         const InvertibilityCertificate<Dim>& certificate, double seconds) {
   std::string text = options.transform;
   if (outcome.domain) {
     text += fmt::format(", {} triangles", outcome.domain->mesh.mesh.simplices.size());
@@ -122,6 +126,7 @@ std::string summary_text(const RegisterOptions& options, const RegisterInput<Dim
                         outcome.metric_after);
   }
   text += summary(evaluation);
+  text += fmt::format("{:<22} {}\n", "invertible", certificate_text(certificate));
   if (!input.landmarks.empty()) {
     const LandmarkErrors errors = landmark_errors(input.landmarks, *outcome.transform);
     text += fmt::format("{:<22} {} pairs, largest error {:.3g} mm, rms {:.3g} mm\n", "landmarks",
@@ -145,6 +150,22 @@ void add_warnings(const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& ev
   }
 }
 
+/// Whether the map is not what --require-invertible asks for; the report says why.
+template <int Dim>
+bool fails_gate(const RegisterOptions& options, const Evaluation<Dim>& evaluation,
+                const InvertibilityCertificate<Dim>& certificate, RunReport& report) {
+  if (!options.require_invertible || certificate.certified()) return false;
+  if (certificate.verdict == Invertibility::kNotCertifiable) {
+    report.add_warning(certificate_text(certificate) +
+                       ": --require-invertible looked at the samples alone.");
+    return evaluation.jacobian.folded > 0;
+  }
+  report.add_warning(message("no invertible map was found: ", certificate_text(certificate),
+                             ". Look for exact landmarks near there that change sides, or make "
+                             "them soft (--landmarks-mode soft)."));
+  return true;
+}
+
 std::vector<std::string> input_files(const RegisterOptions& o) {
   std::vector<std::string> files = {o.fixed, o.moving};
   for (const auto* file :
@@ -164,6 +185,8 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   const OutputFolder output(options.output, input_files(options));
   report.end_stage("reading");
   const RegisterOutcome<Dim> outcome = run_registration(options, input, report, progress);
+  const InvertibilityCertificate<Dim> certificate = certify_invertibility(*outcome.transform);
+  report.end_stage("certificate");
   progress.report({.stage = "results", .fraction = 0.9});
   const RegisterImages<Dim> images = make_images(options, input, *outcome.transform);
   const Evaluation<Dim> evaluation = evaluate_outcome(options, input, outcome, images);
@@ -173,16 +196,16 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   output.write_text("config.toml", config);
   report.end_stage("writing");
   add_warnings(outcome, evaluation, report);
+  const bool gate_failed = fails_gate(options, evaluation, certificate, report);
   for (const std::string& warning : report.warnings()) progress.warn(warning);
 
-  const bool gate_failed = options.require_invertible && evaluation.jacobian.folded > 0;
   const char* status = !outcome.converged ? "not_converged" : (gate_failed ? "gate_failed" : "ok");
   const std::string json =
-      report.to_json(status, figures_json(options, input, outcome, evaluation));
+      report.to_json(status, figures_json(options, input, outcome, evaluation, certificate));
   output.finish(json);
-  std::cout << (options.run.json
-                    ? json
-                    : summary_text(options, input, outcome, evaluation, report.elapsed_s()));
+  std::cout << (options.run.json ? json
+                                 : summary_text(options, input, outcome, evaluation, certificate,
+                                                report.elapsed_s()));
   if (!outcome.converged) return ExitCode::kNotConverged;
   return gate_failed ? ExitCode::kGateFailed : ExitCode::kSuccess;
 }

@@ -275,7 +275,9 @@ std::vector<Option> solver_options(RegisterOptions& o) {
        .choices = {"elimination", "qr", "svd"}},
       {.name = "require-invertible",
        .target = &o.require_invertible,
-       .help = "Exit with 1 when the map folds (results are written)"},
+       .help =
+           "Go on from a map that folds until it is certified not to; exit with 1 where that fails "
+           "(results are written)"},
   };
 }
 

@@ -149,6 +149,7 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   Schedule schedule;
   schedule.levels = options.levels;
   schedule.adapt_weights = !options.gamma;
+  schedule.require_invertible = options.require_invertible;
   registration.schedule(schedule);
   return registration;
 }
@@ -175,6 +176,7 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
     outcome.energies = result.energies;
     for (const auto& [name, weight] : result.weights) outcome.weights[name] = weight;
     outcome.levels = std::move(result.levels);
+    outcome.unfolding = result.unfolding;
     outcome.stopped_because = result.stopped_because;
     outcome.free_parameters = result.free_parameters;
     outcome.converged = result.converged;

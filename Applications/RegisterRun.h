@@ -25,6 +25,7 @@ struct RegisterOutcome {
   std::map<std::string, double> energies;  ///< unweighted
   std::map<std::string, double> weights;   ///< of these
   std::vector<LevelReport> levels;
+  std::optional<UnfoldingReport> unfolding;
   std::string stopped_because;
   int control_points = 0;
   Eigen::Index free_parameters = 0;

@@ -49,6 +49,8 @@ struct Schedule {
   /// (BendingBalance), from its weight on, and more where the finest map folds; and soft landmarks by
   /// the noise, so that their uncertainty in mm is what it says beside the image's.
   bool adapt_weights = false;
+  /// Go on from a map that folds until one is certified not to (Unfolding).
+  bool require_invertible = false;
   bool smooth_finest = true;  ///< low-pass [1 2 1]/4 at the finest level, against noise
 };
 
@@ -63,6 +65,15 @@ struct LevelReport {
   std::vector<double> energy_history;
 };
 
+/// How a map was made invertible where that was asked for and it folded.
+struct UnfoldingReport {
+  int rounds = 0;            ///< minimisations with an energy against folds
+  double weight = 0;         ///< of that energy in the last one
+  double share = 1;          ///< of the way from a certified map that was kept
+  double folded_metric = 0;  ///< of the map that folded
+  bool certified = false;
+};
+
 /// The map, and what is known about it and the way to it.
 template <int Dim>
 struct RegistrationResult {
@@ -74,6 +85,7 @@ struct RegistrationResult {
   double metric_before = 0;                ///< finest level, at A
   double metric_after = 0;
   std::vector<LevelReport> levels;
+  std::optional<UnfoldingReport> unfolding;  ///< where it was needed
   std::vector<double> landmark_errors_mm;
   Eigen::Index free_parameters = 0;
   std::string stopped_because;

@@ -14,6 +14,7 @@
 #include "Registration/OpticalFlow.h"
 #include "Registration/SamplesInside.h"
 #include "Registration/StartingPoint.h"
+#include "Registration/Unfolding.h"
 #include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/JacobianMap.h"
 
@@ -372,7 +373,9 @@ template <int Dim>
 bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level, const Phi& phi) {
   if (!weights_ || !level.terms_after.contains("bending")) return false;
   const bool finest = l + 1 == levels_.size();
-  if (finest && folds(phi)) return weights_->stiffen(energies_);
+  if (finest && !parts_.schedule.require_invertible && folds(phi)) {
+    return weights_->stiffen(energies_);
+  }
   return weights_->balance(balance_at(l, phi, level.terms_after), finest, energies_);
 }
 
@@ -391,6 +394,55 @@ bool RegistrationRun<Dim>::folds(const Phi& phi) const {
   return jacobian_map(transform, images_[l].fixed.raster()).statistics().num_folded > 0;
 }
 
+/// Goes on at the finest level until the map is certified not to fold.
+template <int Dim>
+void RegistrationRun<Dim>::make_invertible(const Phi& start, Phi& phi) {
+  const std::size_t l = levels_.size() - 1;
+  GaussNewtonOptions options;
+  options.solver = std::make_shared<DampedSolver>(
+      LinearSolverOptions{.kind = LinearSolver::kPreconditionedCg, .max_cg_iterations = 6},
+      null_space_->num_columns());
+  const GaussNewton optimizer(
+      {.relative_decrease = 1e-3, .small_decreases = 1, .max_iterations = 30}, options);
+  const auto minimise = [&](bool images, const std::shared_ptr<const Energy<Dim>>& folding,
+                            double weight, const Phi& from) {
+    auto energies = energies_;
+    energies.push_back({"folding", weight, folding});
+    RegistrationObjective<Dim> cost(pattern_, images ? levels_[l].image : nullptr,
+                                    levels_[l].image_weight, std::move(energies));
+    return optimizer
+        .minimize(cost, from, null_space_.get(),
+                  [&](const IterationRecord& record) {
+                    tell("unfolding", l, record.iteration, record.value);
+                    return !cancelled_;
+                  })
+        .x;
+  };
+  Unfolding<Dim> unfolding(
+      parts_.basis, affine_,
+      {.with_images = [&](const auto& folding, double weight,
+                          const Phi& from) { return minimise(true, folding, weight, from); },
+       .without_images = [&](const auto& folding, double weight,
+                             const Phi& from) { return minimise(false, folding, weight, from); },
+       .value =
+           [&](const Phi& at) { return objective(levels_[l])->evaluate(at, nullptr, nullptr); }});
+  UnfoldingReport report;
+  if (parts_.has_images()) {
+    report.folded_metric =
+        levels_[l].image->evaluate(phi.reshaped(Dim, pattern_->size()), 1, nullptr, nullptr);
+  }
+  UnfoldingResult<Dim> found = unfolding.run(phi, start);
+  add_time("unfolding");
+  if (found.rounds == 0) return;
+  phi = std::move(found.phi);
+  result_.levels.back().terms_after = terms_at(l, phi);
+  report.rounds = found.rounds;
+  report.weight = found.folding_weight;
+  report.share = found.share;
+  report.certified = found.certificate.certified();
+  result_.unfolding = report;
+}
+
 template <int Dim>
 void RegistrationRun<Dim>::optimise() {
   tell("start", 0, 0, 0);
@@ -404,6 +456,7 @@ void RegistrationRun<Dim>::optimise() {
   Phi& phi = candidates.front();
   if (result_.levels.size() == levels_.size()) keep_better(start, phi);
   add_time("optimization");
+  if (parts_.schedule.require_invertible && !cancelled_) make_invertible(start, phi);
   if (parts_.look_for_finer_places && parts_.has_images() && !cancelled_) {
     look_for_finer_places(phi);
     add_time("finer places");

@@ -57,6 +57,7 @@ class RegistrationRun {
                             const std::map<std::string, double>& terms);
   void look_for_finer_places(const Phi& phi);
   bool folds(const Phi& phi) const;
+  void make_invertible(const Phi& start, Phi& phi);
   OptimizerResult optimise_level(std::size_t level, const Phi& start,
                                  const std::shared_ptr<const Optimizer>& optimizer);
   void report(const Phi& phi);

@@ -73,12 +73,12 @@ template <int Dim>
 std::vector<Point<Dim>> domain_points(const std::array<Point<Dim>, Dim + 1>& corners, int degree);
 
 /// Coefficients = matrix * values at the domain points. Its largest row sum of absolute values, the
-/// factor by which errors of values grow, is 1, 1, 3, 7 and 18 for degrees 0 to 4 in the plane.
+/// factor by which errors of values grow, is 1, 1, 3, 10 and 23 for degrees 0 to 4 in the plane.
 template <int Dim>
 const Eigen::MatrixXd& coefficients_from_values(int degree);
 
 /// Coefficients on one knot span = matrix * the control values of the degree + 1 uniform B-splines that do
-/// not vanish there. No entry is negative, rows sum to 1.
+/// not vanish there. No entry is negative and rows sum to 1, but for rounding.
 const Eigen::MatrixXd& bernstein_from_bspline(int degree);
 
 extern template class BernsteinSimplex<2>;

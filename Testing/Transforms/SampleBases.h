@@ -42,13 +42,15 @@ inline std::shared_ptr<const SplineBasis<2>> triangles_over(const Box<2>& box,
 }
 
 /// A round body in the middle, a third of the box wide, with a crease along its outline.
-inline std::shared_ptr<const SplineBasis<2>> creased_over(const Box<2>& box, int degree = 3) {
+inline std::shared_ptr<const SplineBasis<2>> creased_over(const Box<2>& box, int degree = 3,
+                                                          int smoothness = -1) {
   const double size = box.size().minCoeff();
   const Point<2> middle = 0.5 * (box.lower + box.upper);
   const auto domain = mesh_domain(rectangle(box.lower[0], box.lower[1], box.upper[0], box.upper[1]),
                                   {closed_line(regular_polygon(middle, size / 3, 12))},
                                   {.edge_length = size / 3, .edge_length_near_lines = size / 6});
-  return std::make_shared<TriangularBSplineBasis<2>>(place_knots(domain, {.degree = degree}).net);
+  return std::make_shared<TriangularBSplineBasis<2>>(
+      place_knots(domain, {.degree = degree, .smoothness = smoothness}).net);
 }
 
 /// The same net with its vertices, triangles and their corners in another order.

@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Transforms/Energies/ScalarAssembly.h"
 
 namespace crease {
 namespace {
@@ -20,6 +22,12 @@ Matrix<3> cofactors(const Matrix<3>& f) {
   Matrix<3> c;
   c << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
   return c;
+}
+
+bool same_tables(const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& b) {
+  return std::ranges::equal(a, b, [](const auto& m, const auto& n) {
+    return m.rows() == n.rows() && m.cols() == n.cols() && m == n;
+  });
 }
 
 }  // namespace
@@ -48,23 +56,30 @@ FoldingEnergy<Dim>::FoldingEnergy(const SplineBasis<Dim>& basis, const AffineMap
         message("FoldingEnergy: the threshold is ", threshold_, "; it must be positive."));
   }
   if (!affine.finite()) throw InvalidInput("FoldingEnergy: the affine part is not finite.");
-  const int degree =
-      options.quadrature_degree >= 0 ? options.quadrature_degree : basis.product_degree(Dim, 1);
-  elements_ = basis.quadrature(degree, 1, options.wanted);
-  for (auto& element : elements_) {
-    element.points.resize(Dim, 0);
-    element.values.resize(0, 0);
-  }
+  const int degree = options.quadrature_degree >= 0
+                         ? options.quadrature_degree
+                         : std::max(2, basis.product_degree(Dim == 2 ? 4 : 3, 2));
+  visit_quadrature<Dim>(basis, degree, 1, options.wanted, [&](auto& elements) {
+    for (auto& element : elements) {
+      measure_ += element.weights.sum();
+      const bool known =
+          !elements_.empty() && same_tables(*elements_.back().gradients, element.gradients);
+      elements_.push_back({std::move(element.control_points), std::move(element.weights),
+                           known ? elements_.back().gradients
+                                 : std::make_shared<const std::vector<Eigen::MatrixXd>>(
+                                       std::move(element.gradients))});
+    }
+  });
 }
 
 template <int Dim>
 typename FoldingEnergy<Dim>::Part FoldingEnergy<Dim>::evaluate_element(
-    const QuadratureElement<Dim>& element, const Eigen::Ref<const ControlPoints<Dim>>& phi,
-    bool with_gradient, bool with_hessian) const {
+    const Element& element, const Eigen::Ref<const ControlPoints<Dim>>& phi, bool with_gradient,
+    bool with_hessian) const {
   const ControlPoints<Dim> local = phi(Eigen::all, element.control_points);
   std::array<ControlPoints<Dim>, Dim> columns;  // of F, by point
   for (int a = 0; a < Dim; ++a) {
-    columns[a].noalias() = local * element.gradients[a];
+    columns[a].noalias() = local * (*element.gradients)[a];
     columns[a].colwise() += linear_.col(a);
   }
   Part part;
@@ -77,22 +92,22 @@ typename FoldingEnergy<Dim>::Part FoldingEnergy<Dim>::evaluate_element(
       if (std::isnan(s)) part.energy = s;
       continue;
     }
-    part.energy += w * s * s * s;
+    part.energy += w * s * s * s * s;
     if (!with_gradient && !with_hessian) continue;
     ControlPoints<Dim> slopes(Dim, k);  // of det F: cof F grad B_i
     Matrix<Dim> cofactor = cofactors(f);
-    slopes.noalias() = cofactor.col(0) * element.gradients[0].col(q).transpose();
+    slopes.noalias() = cofactor.col(0) * (*element.gradients)[0].col(q).transpose();
     for (int a = 1; a < Dim; ++a) {
-      slopes.noalias() += cofactor.col(a) * element.gradients[a].col(q).transpose();
+      slopes.noalias() += cofactor.col(a) * (*element.gradients)[a].col(q).transpose();
     }
     if (with_gradient) {
       if (part.gradient.size() == 0) part.gradient.setZero(Dim, k);
-      part.gradient -= 3 * w * s * s / threshold_ * slopes;
+      part.gradient -= 4 * w * s * s * s / threshold_ * slopes;
     }
     if (with_hessian) {
       if (part.hessian.size() == 0) part.hessian.setZero(Dim * k, Dim * k);
       part.hessian.template selfadjointView<Eigen::Lower>().rankUpdate(
-          slopes.reshaped(), 6 * w * s / (threshold_ * threshold_));
+          slopes.reshaped(), 12 * w * s * s / (threshold_ * threshold_));
     }
   }
   return part;
@@ -123,8 +138,9 @@ double FoldingEnergy<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>& 
       }
       for (Eigen::Index i = 0; hessian && i < part.hessian.rows() / Dim; ++i) {
         for (Eigen::Index j = 0; j < i; ++j) {
-          hessian->add(numbers[i], numbers[j],
-                       scale * part.hessian.template block<Dim, Dim>(Dim * i, Dim * j));
+          // Functions of one element that share no cell do not couple.
+          const Matrix<Dim> block = part.hessian.template block<Dim, Dim>(Dim * i, Dim * j);
+          if (!block.isZero(0)) hessian->add(numbers[i], numbers[j], scale * block);
         }
         const Matrix<Dim> lower = part.hessian.template block<Dim, Dim>(Dim * i, Dim * i);
         const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();

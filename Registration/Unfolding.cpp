@@ -6,13 +6,15 @@
 namespace crease {
 namespace {
 
-constexpr double kThreshold = 0.1;    // det below it costs
-constexpr double kWatched = 0.25;     // patches whose bound is below it are watched
-constexpr double kFirstShare = 0.1;   // of the cost that the energy against folds has at first
-constexpr double kLeastFolds = 1e-3;  // per measure of what is watched, that this refers to
-constexpr double kRise = 10;          // of its weight per round
-constexpr int kMostRounds = 8;        // of rising weights
-constexpr int kMostRetreatTests = 8;  // of the way back, by halving
+constexpr double kThresholdRise = 1.5;  // of det below which it costs, where that is not enough ...
+constexpr double kMostThreshold = 0.6;  // ... up to this
+constexpr double kWatched = 0.25;       // patches whose bound is below it are watched
+constexpr double kFirstShare = 0.1;     // of the cost that the energy against folds has at first
+constexpr double kLeastCost = 1e-3;     // of the smoothest map's, that this refers to at least
+constexpr double kLeastFolds = 1e-3;    // per measure of what is watched, that this refers to
+constexpr double kRise = 10;            // of its weight per round
+constexpr int kMostRounds = 8;          // of rising weights
+constexpr int kMostRetreatTests = 8;    // of the way back, by halving
 
 }  // namespace
 
@@ -41,20 +43,21 @@ void Unfolding<Dim>::watch(const InvertibilityCertificate<Dim>& certificate) {
   }
   if (!more) return;
   folding_ = std::make_shared<const FoldingEnergy<Dim>>(
-      *basis_, affine_, FoldingOptions{.threshold = kThreshold, .wanted = [this](int, int patch) {
+      *basis_, affine_, FoldingOptions{.threshold = threshold_, .wanted = [this](int, int patch) {
                                          return watched_[patch] != 0;
                                        }});
 }
 
 /// Minimises with a rising weight until the certificate is there.
 template <int Dim>
-void Unfolding<Dim>::press(const Minimise& minimise, UnfoldingResult<Dim>& result) {
+void Unfolding<Dim>::press(const Minimise& minimise, double least_cost,
+                           UnfoldingResult<Dim>& result) {
   const auto control_points = [&](const Phi& phi) {
     return Eigen::Map<const ControlPoints<Dim>>(phi.data(), Dim, phi.size() / Dim);
   };
   watch(result.certificate);
   const double folds = folding_->evaluate(control_points(result.phi), 1, nullptr, nullptr);
-  const double cost = costs_.value(result.phi);
+  const double cost = std::max(costs_.value(result.phi), least_cost);
   const double unit = std::max(folds, kLeastFolds * folding_->measure());
   double weight = cost > 0 ? kFirstShare * cost / unit : 1.0;
   for (int round = 0; round < kMostRounds && !result.certificate.certified(); ++round) {
@@ -62,8 +65,12 @@ void Unfolding<Dim>::press(const Minimise& minimise, UnfoldingResult<Dim>& resul
     result.certificate = certify(result.phi);
     result.folding_weight = weight;
     ++result.rounds;
-    weight *= kRise;
     watch(result.certificate);
+    weight *= kRise;
+    // Folds between the energy's points, at the border above all, give way when the points stay farther away.
+    if (folding_->least_determinant(control_points(result.phi)) <= 0) continue;
+    threshold_ = std::min(kThresholdRise * threshold_, kMostThreshold);
+    folding_ = std::make_shared<const FoldingEnergy<Dim>>(folding_->with_threshold(threshold_));
   }
 }
 
@@ -81,6 +88,17 @@ void Unfolding<Dim>::retreat(const Phi& certified, UnfoldingResult<Dim>& result)
   result.certificate = certify(result.phi);
 }
 
+/// From a map that does not fold the energy against folds may keep the minimum from folding.
+template <int Dim>
+void Unfolding<Dim>::improve(UnfoldingResult<Dim>& result) {
+  const Phi better = costs_.with_images(folding_, result.folding_weight, result.phi);
+  const InvertibilityCertificate<Dim> certificate = certify(better);
+  ++result.rounds;
+  if (!certificate.certified() || costs_.value(better) >= costs_.value(result.phi)) return;
+  result.phi = better;
+  result.certificate = certificate;
+}
+
 template <int Dim>
 UnfoldingResult<Dim> Unfolding<Dim>::run(const Phi& phi, const Phi& smoothest) {
   UnfoldingResult<Dim> result;
@@ -90,14 +108,16 @@ UnfoldingResult<Dim> Unfolding<Dim>::run(const Phi& phi, const Phi& smoothest) {
     return r.certificate.certified() || r.certificate.verdict == Invertibility::kNotCertifiable;
   };
   if (done(result)) return result;
-  press(costs_.with_images, result);
+  const double least_cost = kLeastCost * costs_.value(smoothest);
+  press(costs_.with_images, least_cost, result);
   if (done(result)) return result;
   UnfoldingResult<Dim> base;
   base.phi = smoothest;
   base.certificate = certify(smoothest);
-  if (!base.certificate.certified()) press(costs_.without_images, base);
+  if (!base.certificate.certified()) press(costs_.without_images, least_cost, base);
   result.rounds += base.rounds;
   if (base.certificate.certified()) retreat(base.phi, result);
+  if (result.certificate.certified()) improve(result);
   return result;
 }
 

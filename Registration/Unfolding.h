@@ -50,13 +50,15 @@ class Unfolding {
  private:
   InvertibilityCertificate<Dim> certify(const Phi& phi) const;
   void watch(const InvertibilityCertificate<Dim>& certificate);
-  void press(const Minimise& minimise, UnfoldingResult<Dim>& result);
+  void press(const Minimise& minimise, double least_cost, UnfoldingResult<Dim>& result);
   void retreat(const Phi& certified, UnfoldingResult<Dim>& result) const;
+  void improve(UnfoldingResult<Dim>& result);
 
   std::shared_ptr<const SplineBasis<Dim>> basis_;
   AffineMap<Dim> affine_;
   Costs costs_;
   std::vector<char> watched_;  // patches
+  double threshold_ = 0.1;     // det below it costs
   std::shared_ptr<const FoldingEnergy<Dim>> folding_;
 };
 

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
@@ -22,6 +23,12 @@ Matrix<3> cofactors(const Matrix<3>& f) {
   Matrix<3> c;
   c << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
   return c;
+}
+
+void check_threshold(double threshold) {
+  if (threshold > 0) return;
+  throw InvalidInput(
+      message("FoldingEnergy: the threshold is ", threshold, "; it must be positive."));
 }
 
 bool same_tables(const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& b) {
@@ -51,10 +58,7 @@ FoldingEnergy<Dim>::FoldingEnergy(const SplineBasis<Dim>& basis, const AffineMap
     : threshold_(options.threshold),
       linear_(affine.linear),
       num_control_points_(basis.num_control_points()) {
-  if (!(threshold_ > 0)) {
-    throw InvalidInput(
-        message("FoldingEnergy: the threshold is ", threshold_, "; it must be positive."));
-  }
+  check_threshold(threshold_);
   if (!affine.finite()) throw InvalidInput("FoldingEnergy: the affine part is not finite.");
   const int degree = options.quadrature_degree >= 0
                          ? options.quadrature_degree
@@ -73,15 +77,47 @@ FoldingEnergy<Dim>::FoldingEnergy(const SplineBasis<Dim>& basis, const AffineMap
 }
 
 template <int Dim>
-typename FoldingEnergy<Dim>::Part FoldingEnergy<Dim>::evaluate_element(
-    const Element& element, const Eigen::Ref<const ControlPoints<Dim>>& phi, bool with_gradient,
-    bool with_hessian) const {
-  const ControlPoints<Dim> local = phi(Eigen::all, element.control_points);
-  std::array<ControlPoints<Dim>, Dim> columns;  // of F, by point
+FoldingEnergy<Dim> FoldingEnergy<Dim>::with_threshold(double threshold) const {
+  check_threshold(threshold);
+  FoldingEnergy other = *this;
+  other.threshold_ = threshold;
+  return other;
+}
+
+/// Those of F, by point.
+template <int Dim>
+std::array<ControlPoints<Dim>, Dim> FoldingEnergy<Dim>::columns(
+    const Element& element, const ControlPoints<Dim>& local) const {
+  std::array<ControlPoints<Dim>, Dim> columns;
   for (int a = 0; a < Dim; ++a) {
     columns[a].noalias() = local * (*element.gradients)[a];
     columns[a].colwise() += linear_.col(a);
   }
+  return columns;
+}
+
+template <int Dim>
+double FoldingEnergy<Dim>::least_determinant(
+    const Eigen::Ref<const ControlPoints<Dim>>& phi) const {
+  std::vector<double> least(elements_.size(), std::numeric_limits<double>::infinity());
+  parallel_for(std::ssize(elements_), [&](std::int64_t n) {
+    const Element& element = elements_[n];
+    const auto columns = this->columns(element, phi(Eigen::all, element.control_points));
+    for (Eigen::Index q = 0; q < element.weights.size(); ++q) {
+      Matrix<Dim> f;
+      for (int a = 0; a < Dim; ++a) f.col(a) = columns[a].col(q);
+      least[n] = std::min(least[n], f.determinant());
+    }
+  });
+  return least.empty() ? std::numeric_limits<double>::infinity() : *std::ranges::min_element(least);
+}
+
+template <int Dim>
+typename FoldingEnergy<Dim>::Part FoldingEnergy<Dim>::evaluate_element(
+    const Element& element, const Eigen::Ref<const ControlPoints<Dim>>& phi, bool with_gradient,
+    bool with_hessian) const {
+  const ControlPoints<Dim> local = phi(Eigen::all, element.control_points);
+  const auto columns = this->columns(element, local);
   Part part;
   const Eigen::Index k = local.cols();
   for (Eigen::Index q = 0; q < element.weights.size(); ++q) {

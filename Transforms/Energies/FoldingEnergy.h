@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "Transforms/AffineMap.h"
 #include "Transforms/Energies/Energy.h"
 #include "Transforms/Splines/SplineBasis.h"
@@ -33,6 +35,10 @@ class FoldingEnergy final : public Energy<Dim> {
 
   /// Area or volume of the patches that are watched, mm^Dim.
   double measure() const { return measure_; }
+  /// The least det F at its points.
+  double least_determinant(const Eigen::Ref<const ControlPoints<Dim>>& phi) const;
+  /// The same energy with another threshold. @throws InvalidInput as above.
+  FoldingEnergy with_threshold(double threshold) const;
   double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) const override;
   bool couples_coordinates() const override { return true; }
@@ -45,6 +51,8 @@ class FoldingEnergy final : public Energy<Dim> {
         gradients;  // the spans of a lattice share them
   };
   struct Part;
+  std::array<ControlPoints<Dim>, Dim> columns(const Element& element,
+                                              const ControlPoints<Dim>& local) const;
   Part evaluate_element(const Element& element, const Eigen::Ref<const ControlPoints<Dim>>& phi,
                         bool with_gradient, bool with_hessian) const;
 

@@ -80,4 +80,28 @@ ProductSums product_sums(const float* weight, const float* a, const float* b, in
   return result;
 }
 
+WeightSums weight_sums(const float* weight, const float* inside, int count) {
+  Double4 all = {}, within = {};
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const Quad w = load(weight + i);
+    all += __builtin_convertvector(w, Double4);
+    within += __builtin_convertvector(w * load(inside + i), Double4);
+  }
+  WeightSums result{sum(all), sum(within)};
+  for (; i < count; ++i) {
+    result.weight += weight[i];
+    result.weight_inside += weight[i] * inside[i];
+  }
+  return result;
+}
+
+void correlation_slopes(const CorrelationRow& row) {
+  for (int i = 0; i < row.count; ++i) {
+    const float a = row.a[i] - row.mean_a, b = row.b[i] - row.mean_b;
+    row.slope[i] = row.weight[i] * (row.by_a * a + row.by_b * b);
+    row.curvature[i] = row.weight[i] * row.c;
+  }
+}
+
 }  // namespace crease::CREASE_ISA

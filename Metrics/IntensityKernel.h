@@ -22,17 +22,39 @@ struct ProductSums {
   double values[6] = {};
 };
 
+/// Sums of weights of one row.
+struct WeightSums {
+  double weight = 0, weight_inside = 0;  ///< w, w inside
+};
+
+/// dE/db = w (by_a (a - mean_a) + by_b (b - mean_b)) and the curvature w c of some samples.
+struct CorrelationRow {
+  int count = 0;
+  const float* weight = nullptr;
+  const float* a = nullptr;
+  const float* b = nullptr;
+  float by_a = 0, by_b = 0, mean_a = 0, mean_b = 0, c = 0;
+  float* slope = nullptr;
+  float* curvature = nullptr;
+};
+
 using SlopeRowKernel = void(const SlopeRow& row, int dim);
 using ProductSumsKernel = ProductSums(const float* weight, const float* a, const float* b,
                                       int count);
+using WeightSumsKernel = WeightSums(const float* weight, const float* inside, int count);
+using CorrelationSlopesKernel = void(const CorrelationRow& row);
 
 namespace baseline {
 SlopeRowKernel carry_slopes;
 ProductSumsKernel product_sums;
+WeightSumsKernel weight_sums;
+CorrelationSlopesKernel correlation_slopes;
 }  // namespace baseline
 namespace avx2 {
 SlopeRowKernel carry_slopes;
 ProductSumsKernel product_sums;
+WeightSumsKernel weight_sums;
+CorrelationSlopesKernel correlation_slopes;
 }  // namespace avx2
 
 }  // namespace crease

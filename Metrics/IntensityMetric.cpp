@@ -17,7 +17,14 @@ struct SlopeBuffers {
   std::vector<float> by_moving, curvature, by_weight, inside;
 
   void resize(std::size_t size) {
-    for (auto* row : {&by_moving, &curvature, &by_weight, &inside}) row->assign(size, 0.0f);
+    for (auto* row : {&by_moving, &curvature, &by_weight, &inside}) row->resize(size);
+  }
+  /// Of samples beside begin .. end-1 that are read with them.
+  void clear_beside(int begin, int end) {
+    for (int beside : {begin - 1, begin - 2, begin - 3, end, end + 1, end + 2}) {
+      const auto at = static_cast<std::size_t>(kMargin + beside);
+      by_moving[at] = curvature[at] = by_weight[at] = 0;
+    }
   }
 };
 
@@ -114,13 +121,11 @@ void IntensityMetric<Dim>::sample(const MappedRow<Dim>& row, Sums& sums) const {
   Samples samples = kept(row.row);
   samples.begin = row.begin;
   samples.end = row.end;
-  double weight = 0, weight_inside = 0;
-  for (int i = row.begin; i < row.end; ++i) {
-    weight += samples.weight[i];
-    weight_inside += samples.weight[i] * inside[i];
-  }
-  sums.weight += weight;
-  sums.weight_inside += weight_inside;
+  const auto weigh = cpu_has_avx2() ? avx2::weight_sums : baseline::weight_sums;
+  const WeightSums weights =
+      weigh(samples.weight + row.begin, inside + row.begin, row.end - row.begin);
+  sums.weight += weights.weight;
+  sums.weight_inside += weights.weight_inside;
   add(samples, sums);
 }
 
@@ -128,6 +133,7 @@ template <int Dim>
 void IntensityMetric<Dim>::carry(const MappedRow<Dim>& row, const ForceRow<Dim>& out) const {
   const std::size_t at = place(row.row);
   SlopeBuffers& slopes = buffers(stride_);
+  slopes.clear_beside(row.begin, row.end);
   const bool masked = input_.moving_mask != nullptr;
   Samples samples = kept(row.row);
   samples.begin = row.begin;

@@ -1,25 +1,32 @@
 #include "Metrics/JointHistogram.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace crease {
 
-double entropy(const std::vector<double>& probabilities) {
-  double sum = 0;
-  for (double p : probabilities) {
-    if (p > 0) sum -= p * std::log(p);
-  }
-  return sum;
-}
-
 namespace {
 
+/// ln p; 0 where p = 0.
+std::vector<double> logarithms(const std::vector<double>& probabilities) {
+  std::vector<double> result(probabilities.size(), 0.0);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (probabilities[i] > 0) result[i] = std::log(probabilities[i]);
+  }
+  return result;
+}
+
+/// -sum p ln p.
+double entropy(const std::vector<double>& p, const std::vector<double>& log_p) {
+  return -std::inner_product(p.begin(), p.end(), log_p.begin(), 0.0);
+}
+
 /// Mean square of the slope of ln p along a row, where both neighbours are known.
-double fisher_information(const double* row, int bins) {
+double fisher_information(const double* row, const double* log_row, int bins) {
   double sum = 0, weight = 0;
   for (int l = 1; l + 1 < bins; ++l) {
     if (!(row[l - 1] > 0) || !(row[l + 1] > 0)) continue;
-    const double slope = 0.5 * std::log(row[l + 1] / row[l - 1]);
+    const double slope = 0.5 * (log_row[l + 1] - log_row[l - 1]);
     sum += row[l] * slope * slope;
     weight += row[l];
   }
@@ -28,11 +35,20 @@ double fisher_information(const double* row, int bins) {
 
 }  // namespace
 
+double entropy(const std::vector<double>& probabilities) {
+  return entropy(probabilities, logarithms(probabilities));
+}
+
 JointHistogram::JointHistogram(int bins)
     : bins_(bins), values_(static_cast<std::size_t>(bins) * bins, 0.0) {}
 
 JointHistogram& JointHistogram::operator+=(const JointHistogram& other) {
   for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
+  return *this;
+}
+
+JointHistogram& JointHistogram::operator+=(std::span<const std::int32_t> counts) {
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += counts[i];
   return *this;
 }
 
@@ -62,9 +78,11 @@ std::vector<double> JointHistogram::moving_marginal() const {
 
 JointHistogram::Information JointHistogram::information(InformationKind kind) const {
   const auto of_fixed = fixed_marginal(), of_moving = moving_marginal();
+  const auto log_fixed = logarithms(of_fixed), log_moving = logarithms(of_moving);
+  const auto log_joint = logarithms(values_);
   Information result;
-  const double joint = entropy(values_);
-  const double marginals = entropy(of_fixed) + entropy(of_moving);
+  const double joint = entropy(values_, log_joint);
+  const double marginals = entropy(of_fixed, log_fixed) + entropy(of_moving, log_moving);
   const bool mutual = kind == InformationKind::kMutual;
   const double ratio = joint > 0 ? marginals / joint : 2;
   result.value = mutual ? marginals - joint : ratio;
@@ -74,15 +92,15 @@ JointHistogram::Information JointHistogram::information(InformationKind kind) co
   result.slope.assign(values_.size(), 0.0);
   result.curvature.assign(static_cast<std::size_t>(bins_), 0.0);
   for (int k = 0; k < bins_; ++k) {
+    const double* log_row = &log_joint[static_cast<std::size_t>(k) * bins_];
     for (int l = 0; l < bins_; ++l) {
       const double p = row(k)[l];
       if (!(p > 0)) continue;
-      const double slope =
-          by_joint * std::log(p) - by_marginals * (std::log(of_fixed[k]) + std::log(of_moving[l]));
+      const double slope = by_joint * log_row[l] - by_marginals * (log_fixed[k] + log_moving[l]);
       result.slope[static_cast<std::size_t>(k) * bins_ + l] = slope;
       result.mean_slope += p * slope;
     }
-    result.curvature[k] = by_joint * fisher_information(row(k), bins_);
+    result.curvature[k] = by_joint * fisher_information(row(k), log_row, bins_);
   }
   return result;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "Metrics/ParzenWindow.h"
@@ -26,6 +28,8 @@ class JointHistogram {
   double* row(int k) { return &values_[static_cast<std::size_t>(k) * bins_]; }
   const double* row(int k) const { return &values_[static_cast<std::size_t>(k) * bins_]; }
   JointHistogram& operator+=(const JointHistogram& other);
+  /// Adds a sum of weights to each cell, in the order of rows.
+  JointHistogram& operator+=(std::span<const std::int32_t> counts);
 
   /// Makes probabilities of sums of weights. @return their sum.
   double normalise();

@@ -2,17 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "Core/Cpu.h"
 #include "Core/Error.h"
+#include "Core/Parallel.h"
+#include "Metrics/InformationKernel.h"
 
 namespace crease {
 namespace {
 
+/// Counts of a tile's samples.
 template <int Dim>
 struct HistogramSums final : Metric<Dim>::Sums {
-  explicit HistogramSums(int bins) : histogram(bins) {}
-  JointHistogram histogram;
+  explicit HistogramSums(int bins)
+      : num_bins(bins), counts(static_cast<std::size_t>(kHistogramCopies) * bins * bins, 0) {}
+
+  /// Makes room for the further samples of a row.
+  void reserve(int samples) {
+    samples = (samples + kHistogramCopies - 1) / kHistogramCopies * kHistogramCopies;
+    if (num_samples + samples > kHistogramCapacity) {
+      if (!earlier) earlier.emplace(num_bins);
+      add_counts_to(*earlier);
+      std::fill(counts.begin(), counts.end(), 0);
+      num_samples = 0;
+    }
+    num_samples += samples;
+  }
+  void add_to(JointHistogram& total) const {
+    if (earlier) total += *earlier;
+    add_counts_to(total);
+  }
+
+  int num_bins, num_samples = 0;  // those in `counts`
+  std::vector<std::int32_t> counts;
+  std::optional<JointHistogram> earlier;
+
+ private:
+  void add_counts_to(JointHistogram& total) const {
+    const std::size_t size = counts.size() / kHistogramCopies;
+    for (int copy = 0; copy < kHistogramCopies; ++copy) {
+      total += std::span(counts).subspan(copy * size, size);
+    }
+  }
 };
+
+BinScale single(const IntensityBins& bins) {
+  return {static_cast<float>(bins.lower()), static_cast<float>(bins.per_intensity()),
+          static_cast<float>(bins.last())};
+}
 
 /// The bins of a fixed intensity and its shares in them.
 struct FixedShares {
@@ -85,6 +123,53 @@ MutualInformation<Dim>::MutualInformation(MetricInput<Dim> input,
   // Near a match the joint entropy is about the fixed image's: normalised information changes by a change
   // of mutual information over that.
   if (options_.kind == InformationKind::kNormalized) unit_ *= fixed_entropy();
+  counts_per_weight_ = kCountsPerWeight / largest_weight();
+  if (options_.fixed_window == FixedWindow::kBox) find_fixed_bins();
+}
+
+/// No sample weighs more, wherever it is mapped to.
+template <int Dim>
+double MutualInformation<Dim>::largest_weight() const {
+  const auto& weights = this->input().weights;
+  double largest = *std::max_element(weights.begin(), weights.end());
+  if (this->input().moving_mask != nullptr) {
+    const IntensityRange mask = this->input().moving_mask->coefficient_range();
+    largest *= std::max(std::abs(mask.lower), std::abs(mask.upper));
+  }
+  return largest > 0 ? largest : 1;
+}
+
+template <int Dim>
+void MutualInformation<Dim>::find_fixed_bins() {
+  const std::int64_t rows = this->fixed_raster().num_rows();
+  fixed_bin_.resize(static_cast<std::size_t>(rows) * this->row_stride());
+  parallel_for((rows + 15) / 16, [&](std::int64_t part) {
+    for (std::int64_t r = 16 * part; r < std::min(rows, 16 * part + 16); ++r) {
+      const Samples row = this->kept(r);
+      std::uint8_t* bin = &fixed_bin_[static_cast<std::size_t>(r) * this->row_stride()];
+      for (int i = row.begin; i < row.end; ++i) {
+        const FixedShares shares(fixed_bins_.position(row.fixed[i]), FixedWindow::kBox);
+        bin[i] = static_cast<std::uint8_t>(shares.first);
+      }
+    }
+  });
+}
+
+/// Samples begin .. end-1 of a row.
+template <int Dim>
+HistogramRow MutualInformation<Dim>::histogram_row(const Samples& row, int begin, int end) const {
+  HistogramRow result;
+  result.count = end - begin;
+  result.bins = options_.bins;
+  result.weight = row.weight + begin;
+  result.moving = row.moving + begin;
+  result.moving_scale = single(moving_bins_);
+  result.fixed = row.fixed + begin;
+  result.fixed_scale = single(fixed_bins_);
+  if (!fixed_bin_.empty()) {
+    result.fixed_bin = &fixed_bin_[static_cast<std::size_t>(row.row) * this->row_stride() + begin];
+  }
+  return result;
 }
 
 template <int Dim>
@@ -110,11 +195,13 @@ std::unique_ptr<typename Metric<Dim>::Sums> MutualInformation<Dim>::new_sums() c
 
 template <int Dim>
 void MutualInformation<Dim>::add(const Samples& row, typename Metric<Dim>::Sums& sums) const {
-  JointHistogram& histogram = static_cast<HistogramSums<Dim>&>(sums).histogram;
-  for (int i = row.begin; i < row.end; ++i) {
-    if (row.weight[i] == 0) continue;
-    add_sample(histogram, FixedShares(fixed_bins_.position(row.fixed[i]), options_.fixed_window),
-               CubicWindow(moving_bins_.position(row.moving[i])), row.weight[i]);
+  auto& histogram = static_cast<HistogramSums<Dim>&>(sums);
+  const auto kernel = cpu_has_avx2() ? avx2::add_to_histogram : baseline::add_to_histogram;
+  for (int begin = row.begin; begin < row.end; begin += kHistogramCapacity) {
+    const int end = std::min(row.end, begin + kHistogramCapacity);
+    histogram.reserve(end - begin);
+    kernel(histogram_row(row, begin, end), static_cast<float>(counts_per_weight_),
+           histogram.counts.data());
   }
 }
 
@@ -122,43 +209,54 @@ template <int Dim>
 double MutualInformation<Dim>::summarise(
     std::span<const std::unique_ptr<typename Metric<Dim>::Sums>> tiles) {
   JointHistogram total(options_.bins);
-  for (const auto& tile : tiles) total += static_cast<const HistogramSums<Dim>&>(*tile).histogram;
-  const double weight = total.normalise();
+  for (const auto& tile : tiles) static_cast<const HistogramSums<Dim>&>(*tile).add_to(total);
+  const double weight = total.normalise() / counts_per_weight_;
   const auto information = total.information(options_.kind);
-  const double per_sample = weight > 0 ? 1 / weight : 0;
+  tabulate(information, weight > 0 ? 1 / weight : 0);
+  return -information.value;
+}
+
+/// For t in [0, 1] behind bin l, sum_i slope[l - 1 + i] b3(i - 1 - t) and its derivative by t as polynomials
+/// of t; the window never leaves the bins.
+template <int Dim>
+void MutualInformation<Dim>::tabulate(const JointHistogram::Information& information,
+                                      double per_sample) {
+  const auto bins = static_cast<std::size_t>(options_.bins);
   const double per_intensity = moving_bins_.per_intensity();
-  slope_.resize(information.slope.size());
-  for (std::size_t i = 0; i < slope_.size(); ++i) {
-    slope_[i] = static_cast<float>(-per_sample * information.slope[i]);
+  const bool masked = this->input().moving_mask != nullptr;
+  cells_.assign(4 * bins * bins, 0.0f);
+  if (masked) start_.assign(bins * bins, 0.0f);
+  for (std::size_t k = 0; k < bins; ++k) {
+    const auto curvature =
+        static_cast<float>(per_sample * per_intensity * per_intensity * information.curvature[k]);
+    for (std::size_t l = 1; l + 2 < bins; ++l) {
+      const double* s = &information.slope[k * bins + l - 1];
+      const double polynomial[3] = {0.5 * (s[2] - s[0]), s[0] - 2 * s[1] + s[2],
+                                    0.5 * (s[3] - s[0]) + 1.5 * (s[1] - s[2])};
+      float* cell = &cells_[4 * (k * bins + l)];
+      for (int n = 0; n < 3; ++n) cell[n] = static_cast<float>(-per_sample * polynomial[n]);
+      cell[3] = curvature;
+      if (masked) {
+        start_[k * bins + l] = static_cast<float>(-per_sample * (s[0] + 4 * s[1] + s[2]) / 6);
+      }
+    }
   }
   mean_slope_ = static_cast<float>(-per_sample * information.mean_slope);
-  curvature_.resize(information.curvature.size());
-  for (std::size_t k = 0; k < curvature_.size(); ++k) {
-    curvature_[k] =
-        static_cast<float>(per_sample * per_intensity * per_intensity * information.curvature[k]);
-  }
-  return -information.value;
 }
 
 template <int Dim>
 void MutualInformation<Dim>::differentiate(const Samples& row, const Slopes& out) const {
-  for (int i = row.begin; i < row.end; ++i) {
-    if (row.weight[i] == 0 && out.by_weight == nullptr) continue;
-    const FixedShares fixed(fixed_bins_.position(row.fixed[i]), options_.fixed_window);
-    const CubicWindow moving(moving_bins_.position(row.moving[i]));
-    double slope = 0, value = 0, curvature = 0;
-    for (int n = 0; n < fixed.count; ++n) {
-      const int k = fixed.first + n;
-      const float* table = &slope_[static_cast<std::size_t>(k) * options_.bins + moving.first];
-      slope += fixed.value[n] * taps(moving.slope, table);
-      if (out.by_weight != nullptr) value += fixed.value[n] * taps(moving.value, table);
-      curvature += fixed.value[n] * curvature_[k];
-    }
-    out.by_moving[i] =
-        static_cast<float>(row.weight[i] * moving_bins_.per_intensity(row.moving[i]) * slope);
-    out.curvature[i] = static_cast<float>(row.weight[i] * curvature);
-    if (out.by_weight != nullptr) out.by_weight[i] = static_cast<float>(value) - mean_slope_;
+  InformationSlopes slopes;
+  slopes.cells = cells_.data();
+  slopes.by_moving = out.by_moving + row.begin;
+  slopes.curvature = out.curvature + row.begin;
+  if (out.by_weight != nullptr) {
+    slopes.start = start_.data();
+    slopes.mean = mean_slope_;
+    slopes.by_weight = out.by_weight + row.begin;
   }
+  const auto kernel = cpu_has_avx2() ? avx2::information_slopes : baseline::information_slopes;
+  kernel(histogram_row(row, row.begin, row.end), slopes);
 }
 
 template <int Dim>

@@ -7,6 +7,8 @@
 
 namespace crease {
 
+struct HistogramRow;
+
 /// Window of the fixed image's intensities in the joint histogram. The moving image's is a cubic B-spline.
 enum class FixedWindow {
   kBox,  ///< the nearest bin (Mattes et al., 2003)
@@ -62,13 +64,20 @@ class MutualInformation final : public IntensityMetric<Dim> {
  private:
   static constexpr double kNoisePower = 1e-3;
   double fixed_entropy() const;
+  void find_fixed_bins();
+  double largest_weight() const;
+  HistogramRow histogram_row(const Samples& row, int begin, int end) const;
+  void tabulate(const JointHistogram::Information& information, double per_sample);
 
   MutualInformationOptions options_;
   IntensityBins fixed_bins_, moving_bins_;
   double unit_ = 1;
+  double counts_per_weight_ = 1;
+  std::vector<std::uint8_t>
+      fixed_bin_;  // of each sample, in rows of row_stride(), for a box window
   // Of the last evaluation, with all factors that samples share.
-  std::vector<float> slope_;  // of row k, entry l
-  std::vector<float> curvature_;
+  std::vector<float> cells_;  // as InformationSlopes has them
+  std::vector<float> start_;  // with a moving mask
   float mean_slope_ = 0;
 };
 

@@ -27,13 +27,15 @@ CorrelationSums from_kernel(const ProductSums& sums) {
 
 template <int Dim>
 NormalizedCrossCorrelation<Dim>::NormalizedCrossCorrelation(MetricInput<Dim> input, bool squared)
-    : IntensityMetric<Dim>(std::move(input)), squared_(squared) {}
+    : IntensityMetric<Dim>(std::move(input)), squared_(squared) {
+  const IntensityRange range = this->input().moving->coefficient_range();
+  const double largest = std::max(std::abs(range.lower), std::abs(range.upper));
+  least_ = {0, kRounding * largest * largest};
+}
 
 template <int Dim>
 Correlation NormalizedCrossCorrelation<Dim>::correlation(const CorrelationSums& sums) const {
-  const IntensityRange range = this->input().moving->coefficient_range();
-  const double largest = std::max(std::abs(range.lower), std::abs(range.upper));
-  const Correlation found = correlate(sums, squared_, {0, kRounding * largest * largest});
+  const Correlation found = correlate(sums, squared_, least_);
   if (!found.has_contrast) {
     throw SolverError(
         "ncc: the moving image is constant where it is compared; check the masks and the start");
@@ -73,14 +75,19 @@ double NormalizedCrossCorrelation<Dim>::summarise(
 template <int Dim>
 void NormalizedCrossCorrelation<Dim>::differentiate(const Samples& row, const Slopes& out) const {
   const Correlation& c = correlation_;
-  const auto by_a = static_cast<float>(c.by_a), by_b = static_cast<float>(c.by_b);
-  const auto mean_a = static_cast<float>(c.mean_a), mean_b = static_cast<float>(c.mean_b);
-  const auto curvature = static_cast<float>(c.curvature);
-  for (int i = row.begin; i < row.end; ++i) {
-    out.by_moving[i] =
-        row.weight[i] * (by_a * (row.fixed[i] - mean_a) + by_b * (row.moving[i] - mean_b));
-    out.curvature[i] = row.weight[i] * curvature;
-  }
+  CorrelationRow slopes;
+  slopes.count = row.end - row.begin;
+  slopes.weight = row.weight + row.begin;
+  slopes.a = row.fixed + row.begin;
+  slopes.b = row.moving + row.begin;
+  slopes.by_a = static_cast<float>(c.by_a);
+  slopes.by_b = static_cast<float>(c.by_b);
+  slopes.mean_a = static_cast<float>(c.mean_a);
+  slopes.mean_b = static_cast<float>(c.mean_b);
+  slopes.c = static_cast<float>(c.curvature);
+  slopes.slope = out.by_moving + row.begin;
+  slopes.curvature = out.curvature + row.begin;
+  cpu_has_avx2() ? avx2::correlation_slopes(slopes) : baseline::correlation_slopes(slopes);
   if (out.by_weight == nullptr) return;
   for (int i = row.begin; i < row.end; ++i) {
     out.by_weight[i] = static_cast<float>(c.weight_slope(row.fixed[i], row.moving[i]));

@@ -41,6 +41,7 @@ class NormalizedCrossCorrelation final : public IntensityMetric<Dim> {
   Correlation correlation(const CorrelationSums& sums) const;
 
   bool squared_;
+  LeastVariances least_;
   Correlation correlation_;
 };
 

@@ -17,6 +17,8 @@ class IntensityBins {
   double position(double intensity) const {
     return std::clamp((intensity - lower_) * per_intensity_ + 2, 2.0, static_cast<double>(last_));
   }
+  double lower() const { return lower_; }
+  int last() const { return last_; }  ///< the highest position
   /// d position / d intensity, inside the range.
   double per_intensity() const { return per_intensity_; }
   double per_intensity(double intensity) const {

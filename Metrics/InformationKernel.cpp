@@ -67,17 +67,6 @@ class CubicFixedWindow {
   float share_[kBins][kLanes];
 };
 
-void transpose(Quad (&v)[4]) {
-  const Quad a = __builtin_shuffle(v[0], v[1], QuadIndex{0, 4, 1, 5});
-  const Quad b = __builtin_shuffle(v[0], v[1], QuadIndex{2, 6, 3, 7});
-  const Quad c = __builtin_shuffle(v[2], v[3], QuadIndex{0, 4, 1, 5});
-  const Quad d = __builtin_shuffle(v[2], v[3], QuadIndex{2, 6, 3, 7});
-  v[0] = __builtin_shuffle(a, c, QuadIndex{0, 1, 4, 5});
-  v[1] = __builtin_shuffle(a, c, QuadIndex{2, 3, 6, 7});
-  v[2] = __builtin_shuffle(b, d, QuadIndex{0, 1, 4, 5});
-  v[3] = __builtin_shuffle(b, d, QuadIndex{2, 3, 6, 7});
-}
-
 void add_counts(std::int32_t* cells, Quad counts) {
   QuadIndex sum;
   __builtin_memcpy(&sum, cells, sizeof sum);

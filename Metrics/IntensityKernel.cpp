@@ -47,8 +47,6 @@ void carry(const SlopeRow& row) {
   if (row.curvature_sum[0] != nullptr) curvatures<Dim>(row, begin, end);
 }
 
-using Double4 = double __attribute__((vector_size(32)));
-
 double sum(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
 }  // namespace
@@ -59,9 +57,9 @@ ProductSums product_sums(const float* weight, const float* a, const float* b, in
   Double4 lanes[6] = {};
   int i = 0;
   for (; i + 4 <= count; i += 4) {
-    const Double4 w = __builtin_convertvector(load(weight + i), Double4);
-    const Double4 x = __builtin_convertvector(load(a + i), Double4);
-    const Double4 y = __builtin_convertvector(load(b + i), Double4);
+    const Double4 w = doubles(load(weight + i));
+    const Double4 x = doubles(load(a + i));
+    const Double4 y = doubles(load(b + i));
     const Double4 wx = w * x, wy = w * y;
     lanes[0] += w;
     lanes[1] += wx;
@@ -85,8 +83,8 @@ WeightSums weight_sums(const float* weight, const float* inside, int count) {
   int i = 0;
   for (; i + 4 <= count; i += 4) {
     const Quad w = load(weight + i);
-    all += __builtin_convertvector(w, Double4);
-    within += __builtin_convertvector(w * load(inside + i), Double4);
+    all += doubles(w);
+    within += doubles(w * load(inside + i));
   }
   WeightSums result{sum(all), sum(within)};
   for (; i < count; ++i) {

@@ -133,13 +133,13 @@ template <int Dim>
 void IntensityMetric<Dim>::carry(const MappedRow<Dim>& row, const ForceRow<Dim>& out) const {
   const std::size_t at = place(row.row);
   SlopeBuffers& slopes = buffers(stride_);
-  slopes.clear_beside(row.begin, row.end);
   const bool masked = input_.moving_mask != nullptr;
   Samples samples = kept(row.row);
   samples.begin = row.begin;
   samples.end = row.end;
   differentiate(samples, {slopes.by_moving.data() + kMargin, slopes.curvature.data() + kMargin,
                           masked ? slopes.by_weight.data() + kMargin : nullptr});
+  slopes.clear_beside(row.begin, row.end);
   SlopeRow kernel_row;
   kernel_row.begin = row.begin;
   kernel_row.end = row.end;

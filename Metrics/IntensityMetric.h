@@ -41,7 +41,8 @@ class IntensityMetric : public Metric<Dim> {
     const float* fixed = nullptr;  ///< less the mean
     const float* moving = nullptr;
   };
-  /// Of the same samples: dE/dm_x, a curvature >= 0, and dE/dw_x unless null.
+  /// Of the same samples: dE/dm_x, a curvature >= 0, and dE/dw_x unless null. Up to three entries beside them
+  /// may be written, too.
   struct Slopes {
     float* by_moving = nullptr;
     float* curvature = nullptr;

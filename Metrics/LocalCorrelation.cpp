@@ -1,9 +1,12 @@
 #include "Metrics/LocalCorrelation.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "Core/Cpu.h"
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Metrics/LocalCorrelationKernel.h"
 #include "Metrics/WindowSums.h"
 
 namespace crease {
@@ -11,15 +14,20 @@ namespace {
 
 constexpr double kLeastContrast = 1e-3;  // of a window, relative to the variance of the whole image
 
-/// What multiplies aa, bb, ab, a, b and 1 in weight_slope().
-std::array<double, 6> weight_polynomial(const Correlation& c) {
-  return {c.by_aa,
-          c.by_bb,
-          c.by_ab,
-          -2 * c.by_aa * c.mean_a - c.by_ab * c.mean_b,
-          -2 * c.by_bb * c.mean_b - c.by_ab * c.mean_a,
-          c.by_aa * c.mean_a * c.mean_a + c.by_bb * c.mean_b * c.mean_b +
-              c.by_ab * c.mean_a * c.mean_b};
+/// What the windows of one row are turned into, before they are summed; kept by each thread for its next row.
+struct RowBuffers {
+  std::vector<float> by_moving, by_weight;
+
+  void resize(std::size_t size) {
+    by_moving.resize(size);
+    by_weight.resize(size);
+  }
+};
+
+RowBuffers& buffers(std::size_t size) {
+  static thread_local RowBuffers instance;
+  instance.resize(size);
+  return instance;
 }
 
 struct ValueSums {
@@ -51,45 +59,63 @@ std::array<int, 3> LocalCorrelation<Dim>::size() const {
   return {size[0], size[1], Dim == 3 ? size[Dim - 1] : 1};
 }
 
-/// of_sample(weight, fixed, moving) of every sample with a weight, 0 elsewhere.
 template <int Dim>
-typename LocalCorrelation<Dim>::Field LocalCorrelation<Dim>::field(const auto& of_sample) const {
-  const std::int64_t rows = this->fixed_raster().num_rows();
-  Field values(static_cast<std::size_t>(rows) * this->row_stride(), 0.0f);
-  parallel_for((rows + 15) / 16, [&](std::int64_t part) {
-    for (std::int64_t r = 16 * part; r < std::min(rows, 16 * part + 16); ++r) {
+std::size_t LocalCorrelation<Dim>::row_size() const {
+  return window_row_size(this->fixed_raster().size[0]);
+}
+
+template <int Dim>
+WindowedRow LocalCorrelation<Dim>::windowed(const Samples& row) const {
+  return {row.end - row.begin, row.weight + row.begin, row.fixed + row.begin,
+          row.moving + row.begin, static_cast<float>(moving_shift_)};
+}
+
+/// The products of all samples, summed along rows.
+template <int Dim>
+void LocalCorrelation<Dim>::sum_products(bool of_fixed, Field& rows) const {
+  const std::int64_t num_rows = this->fixed_raster().num_rows();
+  rows.resize(static_cast<std::size_t>(num_rows) * row_size());
+  const auto kernel = cpu_has_avx2() ? avx2::window_products : baseline::window_products;
+  parallel_for((num_rows + 15) / 16, [&](std::int64_t part) {
+    float* products = buffers(row_size()).by_moving.data();
+    for (std::int64_t r = 16 * part; r < std::min(num_rows, 16 * part + 16); ++r) {
       const Samples row = this->kept(r);
-      float* out = &values[static_cast<std::size_t>(r) * this->row_stride()];
-      const auto shift = static_cast<float>(moving_shift_);
-      for (int i = row.begin; i < row.end; ++i) {
-        if (row.weight[i] != 0) {
-          out[i] = of_sample(row.weight[i], row.fixed[i], row.moving[i] - shift);
-        }
-      }
+      kernel(windowed(row), of_fixed ? products : nullptr, of_fixed ? nullptr : products);
+      sum_along_row(products, row.end, radius_, &rows[static_cast<std::size_t>(r) * row_size()]);
     }
   });
-  return values;
+}
+
+/// Window sums of what has been summed along rows.
+template <int Dim>
+void LocalCorrelation<Dim>::sum_across(Field& rows) {
+  scratch_.resize(rows.size());
+  const std::span<float> to = window_target(rows, scratch_, size());
+  sum_across_rows(rows, scratch_, size(), radius_, [&](std::int64_t r, const float* sums) {
+    std::copy_n(sums, row_size(), &to[static_cast<std::size_t>(r) * row_size()]);
+  });
+  if (to.data() != rows.data()) rows.swap(scratch_);
 }
 
 /// The windows of the fixed image that count, and the unit.
 template <int Dim>
 void LocalCorrelation<Dim>::find_contrast() {
-  Field w = field([](float weight, float, float) { return weight; });
-  Field a = field([](float weight, float f, float) { return weight * f; });
-  Field aa = field([](float weight, float f, float) { return weight * f * f; });
-  for (Field* values : {&w, &a, &aa}) sum_windows(*values, size(), this->row_stride(), radius_);
+  sum_products(true, of_fixed_);
+  sum_across(of_fixed_);
   const double least = kLeastContrast * this->fixed_statistics().variance;
-  contrast_.assign(w.size(), 0);
+  const std::int64_t num_rows = this->fixed_raster().num_rows();
+  contrast_.assign(static_cast<std::size_t>(num_rows) * this->row_stride(), 0);
   double sum = 0;
-  for (std::int64_t r = 0; r < this->fixed_raster().num_rows(); ++r) {
+  for (std::int64_t r = 0; r < num_rows; ++r) {
     const Samples row = this->kept(r);
     for (int i = row.begin; i < row.end; ++i) {
-      const std::size_t at = static_cast<std::size_t>(r) * this->row_stride() + i;
-      if (!(w[at] > 0)) continue;
-      const double mean = static_cast<double>(a[at]) / w[at];
-      const double variance = static_cast<double>(aa[at]) / w[at] - mean * mean;
-      contrast_[at] = variance > least ? 1 : 0;
-      if (contrast_[at]) sum += row.weight[i] * variance;
+      const float* s = &of_fixed_[static_cast<std::size_t>(r) * row_size() + kWindowNumbers * i];
+      if (!(s[0] > 0)) continue;
+      const double mean = static_cast<double>(s[1]) / s[0];
+      const double variance = static_cast<double>(s[2]) / s[0] - mean * mean;
+      if (!(variance > least)) continue;
+      contrast_[static_cast<std::size_t>(r) * this->row_stride() + i] = 1;
+      sum += row.weight[i] * variance;
     }
   }
   unit_ = 0.5 * sum * this->fixed_raster().sample_volume();
@@ -104,75 +130,80 @@ Correlation LocalCorrelation<Dim>::correlation(const CorrelationSums& sums) cons
   return correlate(sums, true, least_);
 }
 
+/// Correlates all windows and sums what follows along rows, into by_moving_ and by_weight_.
+template <int Dim>
+CorrelatedSums LocalCorrelation<Dim>::correlate_rows() {
+  const bool masked = this->input().moving_mask != nullptr;
+  const auto num_rows = static_cast<std::size_t>(this->fixed_raster().num_rows());
+  if (masked) {
+    sum_products(true, of_fixed_);
+    sum_across(of_fixed_);
+    by_weight_.resize(num_rows * row_size());
+    value_.resize(num_rows * row_size() / kWindowNumbers);
+  }
+  sum_products(false, by_moving_);
+  scratch_.resize(by_moving_.size());
+  const std::span<float> to = window_target(by_moving_, scratch_, size());
+  std::vector<CorrelatedSums> found(num_rows);
+  const auto kernel = cpu_has_avx2() ? avx2::correlate_windows : baseline::correlate_windows;
+  sum_across_rows(by_moving_, scratch_, size(), radius_, [&](std::int64_t r, const float* sums) {
+    const Samples row = this->kept(r);
+    const std::size_t at = static_cast<std::size_t>(r) * row_size();
+    RowBuffers& own = buffers(row_size());
+    CorrelatedRow correlated;
+    correlated.of_fixed = &of_fixed_[at];
+    correlated.of_moving = sums;
+    correlated.counts = &contrast_[static_cast<std::size_t>(r) * this->row_stride()];
+    correlated.least_variance = least_.b;
+    correlated.by_moving = own.by_moving.data();
+    if (masked) {
+      correlated.by_weight = own.by_weight.data();
+      correlated.value = &value_[at / kWindowNumbers];
+    }
+    found[static_cast<std::size_t>(r)] = kernel(windowed(row), correlated);
+    sum_along_row(correlated.by_moving, row.end, radius_, &to[at]);
+    if (masked) sum_along_row(correlated.by_weight, row.end, radius_, &by_weight_[at]);
+  });
+  if (to.data() != by_moving_.data()) by_moving_.swap(scratch_);
+  CorrelatedSums total;
+  for (const CorrelatedSums& row : found) {
+    total.value += row.value;
+    total.weight += row.weight;
+  }
+  return total;
+}
+
 template <int Dim>
 double LocalCorrelation<Dim>::summarise(
     std::span<const std::unique_ptr<typename Metric<Dim>::Sums>>) {
-  std::array<Field, 6> sums = {field([](float w, float, float) { return w; }),
-                               field([](float w, float a, float) { return w * a; }),
-                               field([](float w, float, float b) { return w * b; }),
-                               field([](float w, float a, float) { return w * a * a; }),
-                               field([](float w, float, float b) { return w * b * b; }),
-                               field([](float w, float a, float b) { return w * a * b; })};
-  const std::size_t stride = this->row_stride();
-  for (Field& values : sums) sum_windows(values, size(), stride, radius_);
-  const bool masked = this->input().moving_mask != nullptr;
-  for (Field& values : by_moving_) values.assign(sums[0].size(), 0.0f);
-  if (masked) {
-    for (Field& values : by_weight_) values.assign(sums[0].size(), 0.0f);
-    value_.assign(sums[0].size(), 0.0f);
-  }
-  const auto total = parallel_sum(
-      this->fixed_raster().num_rows(), ValueSums{},
-      [&](std::int64_t r, ValueSums& sum) {
-        const Samples row = this->kept(r);
-        for (int i = row.begin; i < row.end; ++i) {
-          if (row.weight[i] == 0 || !counts(r, i)) continue;
-          const std::size_t at = static_cast<std::size_t>(r) * stride + i;
-          const Correlation c = correlation(
-              {sums[0][at], sums[1][at], sums[2][at], sums[3][at], sums[4][at], sums[5][at]});
-          const double w = row.weight[i];
-          sum += {w * c.value, w};
-          by_moving_[0][at] = static_cast<float>(w * c.by_a);
-          by_moving_[1][at] = static_cast<float>(w * c.by_b);
-          by_moving_[2][at] = static_cast<float>(-w * (c.by_a * c.mean_a + c.by_b * c.mean_b));
-          by_moving_[3][at] = static_cast<float>(w * c.curvature);
-          if (!masked) continue;
-          const auto polynomial = weight_polynomial(c);
-          for (int k = 0; k < 6; ++k) by_weight_[k][at] = static_cast<float>(w * polynomial[k]);
-          value_[at] = static_cast<float>(c.value);
-        }
-      },
-      16);
+  const CorrelatedSums total = correlate_rows();
   if (!(total.weight > 0)) throw SolverError("lncc: no window has any sample that counts");
-  const double mean = total.value / total.weight;
-  const auto per_weight = static_cast<float>(1 / total.weight);
-  const auto finish = [&](Field& values) {
-    for (float& v : values) v *= per_weight;
-    sum_windows(values, size(), stride, radius_);
-  };
-  for (Field& values : by_moving_) finish(values);
-  if (masked) {
-    for (Field& values : by_weight_) finish(values);
-    for (std::size_t i = 0; i < value_.size(); ++i) {
-      value_[i] = contrast_[i] ? (value_[i] - static_cast<float>(mean)) * per_weight : 0.0f;
-    }
-  }
-  return mean;
+  sum_across(by_moving_);
+  if (this->input().moving_mask != nullptr) sum_across(by_weight_);
+  per_weight_ = 1 / total.weight;
+  mean_ = total.value * per_weight_;
+  return mean_;
 }
 
 template <int Dim>
 void LocalCorrelation<Dim>::differentiate(const Samples& row, const Slopes& out) const {
-  const std::size_t at = static_cast<std::size_t>(row.row) * this->row_stride();
+  const std::size_t at = static_cast<std::size_t>(row.row) * row_size();
+  WindowedSlopes slopes;
+  slopes.by_moving = &by_moving_[at + kWindowNumbers * row.begin];
+  slopes.per_weight = static_cast<float>(per_weight_);
+  slopes.slope = out.by_moving + row.begin;
+  slopes.curvature = out.curvature + row.begin;
+  cpu_has_avx2() ? avx2::windowed_slopes(windowed(row), slopes)
+                 : baseline::windowed_slopes(windowed(row), slopes);
+  if (out.by_weight == nullptr) return;
   const auto shift = static_cast<float>(moving_shift_);
   for (int i = row.begin; i < row.end; ++i) {
     const float a = row.fixed[i], b = row.moving[i] - shift;
-    out.by_moving[i] = row.weight[i] * (by_moving_[0][at + i] * a + by_moving_[1][at + i] * b +
-                                        by_moving_[2][at + i]);
-    out.curvature[i] = row.weight[i] * by_moving_[3][at + i];
-    if (out.by_weight == nullptr) continue;
-    const auto& p = by_weight_;
-    out.by_weight[i] = value_[at + i] + p[0][at + i] * a * a + p[1][at + i] * b * b +
-                       p[2][at + i] * a * b + p[3][at + i] * a + p[4][at + i] * b + p[5][at + i];
+    const float* m = &by_moving_[at + kWindowNumbers * i];
+    const float* w = &by_weight_[at + kWindowNumbers * i];
+    double slope = w[0] * a * a + 0.5f * m[1] * b * b + m[0] * a * b + w[1] * a + m[2] * b + w[2];
+    if (row.weight[i] != 0 && counts(row.row, i)) slope += value_[at / kWindowNumbers + i] - mean_;
+    out.by_weight[i] = static_cast<float>(per_weight_ * slope);
   }
 }
 

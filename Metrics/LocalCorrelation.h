@@ -8,6 +8,9 @@
 
 namespace crease {
 
+struct CorrelatedSums;
+struct WindowedRow;
+
 /// Correlation in windows: for images whose gain and offset change from place to place (bias fields), of
 /// either sign.
 ///
@@ -42,10 +45,14 @@ class LocalCorrelation final : public IntensityMetric<Dim> {
   double reference(Reference& all) const override;
 
  private:
-  using Field = std::vector<float>;  // an entry per sample, in rows of row_stride()
+  using Field = std::vector<float>;  // four numbers per sample: WindowSums.h
   std::array<int, 3> size() const;
-  Field field(const auto& of_sample) const;
+  std::size_t row_size() const;
+  WindowedRow windowed(const Samples& row) const;
+  void sum_products(bool of_fixed, Field& rows) const;
+  void sum_across(Field& rows);
   void find_contrast();
+  CorrelatedSums correlate_rows();
   Correlation correlation(const CorrelationSums& sums) const;
   bool counts(std::int64_t row, int i) const {
     return contrast_[static_cast<std::size_t>(row) * this->row_stride() + i] != 0;
@@ -56,11 +63,12 @@ class LocalCorrelation final : public IntensityMetric<Dim> {
   double moving_shift_ = 0;  // near the middle of the moving image's range: keeps sums small
   LeastVariances least_;
   std::vector<std::uint8_t> contrast_;
-  // Of the last evaluation: window sums of what multiplies a, b and 1 in dE/db, of the curvature, and with a
-  // moving mask of what multiplies aa, bb, ab, a, b and 1 in dE/dw.
-  std::array<Field, 4> by_moving_;
-  std::array<Field, 6> by_weight_;
-  Field value_;  // of the sample's own window, less the mean
+  Field of_fixed_;  // window sums of w, w a and w a a
+  // Of the last evaluation: window sums of what multiplies a, b and 1 in dE/db, and with a moving mask of what
+  // multiplies a a, a and 1 in dE/dw; the rest of that follows from the former. All times the sum of weights.
+  Field by_moving_, by_weight_, scratch_;
+  std::vector<float> value_;  // of the sample's own window
+  double mean_ = 0, per_weight_ = 0;
 };
 
 extern template class LocalCorrelation<2>;

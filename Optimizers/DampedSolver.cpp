@@ -99,7 +99,7 @@ DampedSolver::Result DampedSolver::solve_with_scalar_factor(
 DampedSolver::Result DampedSolver::conjugate_gradients(const Eigen::Ref<const Eigen::VectorXd>& b,
                                                        int max_iterations,
                                                        const Preconditioner& preconditioner) {
-  auto result = conjugate_gradient(
+  auto result = linear_conjugate_gradient(
       [this](const Eigen::VectorXd& p) { return symmetric_product(A_, p); }, preconditioner, b,
       {.tolerance = options_.cg_tolerance, .max_iterations = max_iterations});
   cg_iterations_ += result.iterations;

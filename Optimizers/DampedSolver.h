@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "Optimizers/ConjugateGradient.h"
+#include "Optimizers/LinearConjugateGradient.h"
 #include "Optimizers/SparseCholesky.h"
 
 namespace crease {

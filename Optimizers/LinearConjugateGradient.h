@@ -6,13 +6,13 @@
 namespace crease {
 
 /// When to stop.
-struct ConjugateGradientOptions {
+struct LinearConjugateGradientOptions {
   double tolerance = 0.1;  ///< stop at this value of sqrt(r^T z) relative to its first value
   int max_iterations = 12;
 };
 
 /// The last iterate, and why it is the last.
-struct ConjugateGradientResult {
+struct LinearConjugateGradientResult {
   Eigen::VectorXd x;
   int iterations = 0;
   bool converged = false;
@@ -23,9 +23,9 @@ struct ConjugateGradientResult {
 /// M^-1 r is the preconditioned residual. Every iterate is a descent direction of 1/2 x^T A x - b^T x.
 ///
 /// Source: Hestenes and Stiefel 1952; Y. Saad, "Iterative Methods for Sparse Linear Systems", 9.2.
-ConjugateGradientResult conjugate_gradient(
+LinearConjugateGradientResult linear_conjugate_gradient(
     const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& apply,
     const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& precondition,
-    const Eigen::Ref<const Eigen::VectorXd>& b, const ConjugateGradientOptions& options = {});
+    const Eigen::Ref<const Eigen::VectorXd>& b, const LinearConjugateGradientOptions& options = {});
 
 }  // namespace crease

@@ -1,14 +1,14 @@
-#include "Optimizers/ConjugateGradient.h"
+#include "Optimizers/LinearConjugateGradient.h"
 
 #include <cmath>
 
 namespace crease {
 
-ConjugateGradientResult conjugate_gradient(
+LinearConjugateGradientResult linear_conjugate_gradient(
     const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& apply,
     const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& precondition,
-    const Eigen::Ref<const Eigen::VectorXd>& b, const ConjugateGradientOptions& options) {
-  ConjugateGradientResult result{.x = Eigen::VectorXd::Zero(b.size())};
+    const Eigen::Ref<const Eigen::VectorXd>& b, const LinearConjugateGradientOptions& options) {
+  LinearConjugateGradientResult result{.x = Eigen::VectorXd::Zero(b.size())};
   Eigen::VectorXd r = b;
   Eigen::VectorXd z = precondition(r);
   Eigen::VectorXd p = z;

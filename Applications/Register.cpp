@@ -13,6 +13,7 @@
 #include "Applications/RegisterOptions.h"
 #include "Applications/RegisterOutput.h"
 #include "Applications/RegisterRun.h"
+#include "Applications/Report/RegisterReport.h"
 
 namespace crease {
 namespace {
@@ -22,7 +23,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kDetails =
     R"(Writes into DIR: warped.* (the moving image on the fixed grid), displacement.mha (T(x) - x in mm),
 jacobian.mha, transform.json (for crease warp), transform.tfm (for ITK, 3D Slicer and ANTs; rigid and
-affine maps, B-splines of degree 1 to 3), pictures/*.png, config.toml and, last, result.json.
+affine maps, B-splines of degree 1 to 3), pictures/*.png, report.html (one file for the browser, to judge
+the result by looking), config.toml and, last, result.json.
 Physical coordinates in mm (LPS) everywhere; T maps points of the fixed image to the moving image.
 
 How exactly other programs repeat T: by transform.tfm to 1e-9 mm, B-splines within the fixed image's pixels
@@ -132,7 +134,7 @@ std::string summary_text(const RegisterOptions& options, const RegisterInput<Dim
     text += fmt::format("{:<22} {} pairs, largest error {:.3g} mm, rms {:.3g} mm\n", "landmarks",
                         input.landmarks.size(), errors.largest, errors.rms);
   }
-  text += fmt::format("{:<22} {}, pictures in {}/pictures\n", "results", options.output,
+  text += fmt::format("{:<22} {}; to look at it, open {}/report.html\n", "results", options.output,
                       options.output);
   return text;
 }
@@ -192,7 +194,8 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   const Evaluation<Dim> evaluation = evaluate_outcome(options, input, outcome, images);
   report.end_stage("results");
   write_results(output, options, input, outcome, images);
-  write_pictures(output, options, input, outcome, images);
+  RegisterStacks<Dim> stacks(options, input, outcome, images);
+  write_pictures(output, options, input, outcome, images, stacks.jobs());
   output.write_text("config.toml", config);
   report.end_stage("writing");
   add_warnings(outcome, evaluation, report);
@@ -200,8 +203,13 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   for (const std::string& warning : report.warnings()) progress.warn(warning);
 
   const char* status = !outcome.converged ? "not_converged" : (gate_failed ? "gate_failed" : "ok");
-  const std::string json =
-      report.to_json(status, figures_json(options, input, outcome, evaluation, certificate));
+  const Json figures = figures_json(options, input, outcome, evaluation, certificate);
+  const Json result = report.result(status, figures);
+  output.write_text(
+      "report.html",
+      register_report<Dim>({options, input, outcome, evaluation, result, config}, stacks));
+  report.end_stage("writing");
+  const std::string json = report.to_json(status, figures);
   output.finish(json);
   std::cout << (options.run.json ? json
                                  : summary_text(options, input, outcome, evaluation, certificate,

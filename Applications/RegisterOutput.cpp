@@ -74,11 +74,14 @@ template <int Dim>
 RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterInput<Dim>& input,
                                 const Transform<Dim>& transform) {
   const Raster<Dim>& raster = input.fixed.image.raster();
-  RegisterImages<Dim> images{transform_images(transform, raster), {}};
+  RegisterImages<Dim> images{transform_images(transform, raster), {}, {}};
   const auto kind =
       options.interpolator == "linear" ? InterpolationKind::kLinear : InterpolationKind::kCubic;
   images.warped = resample(*make_interpolator(input.moving.image, kind), raster,
                            row_map(images.displacement), std::numeric_limits<float>::quiet_NaN());
+  const PointMap<Dim> stay = [](const Point<Dim>& x) { return x; };
+  images.before = resample(*make_interpolator(input.moving.image, InterpolationKind::kLinear),
+                           raster, stay, std::numeric_limits<float>::quiet_NaN());
   return images;
 }
 
@@ -127,13 +130,10 @@ void write_results(const OutputFolder& output, const RegisterOptions& options,
 template <int Dim>
 void write_pictures(const OutputFolder& output, const RegisterOptions& options,
                     const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
-                    const RegisterImages<Dim>& images) {
+                    const RegisterImages<Dim>& images,
+                    std::vector<std::function<void()>> further_jobs) {
   const bool one_window = options.expects_equal_intensities();
   const Image<float, Dim>& fixed = input.fixed.image;
-  const PointMap<Dim> stay = [](const Point<Dim>& x) { return x; };
-  const Image<float, Dim> before =
-      resample(*make_interpolator(input.moving.image, InterpolationKind::kLinear), fixed.raster(),
-               stay, std::numeric_limits<float>::quiet_NaN());
   DeformationDrawing<Dim> drawing;
   drawing.fixed_raster = fixed.raster();
   drawing.map = [&](const Point<Dim>& x) { return outcome.transform->map(x); };
@@ -141,24 +141,23 @@ void write_pictures(const OutputFolder& output, const RegisterOptions& options,
   if constexpr (Dim == 2) {
     if (outcome.domain) drawing.feature_lines = outcome.domain->feature_lines;
   }
-  struct Job {
-    const char* name;
-    std::function<Picture()> draw;
-  };
-  const std::vector<Job> jobs = {
+  const std::vector<std::pair<const char*, std::function<Picture()>>> pictures = {
       {"fixed", [&] { return image_picture(fixed, "fixed"); }},
       {"moving", [&] { return image_picture(input.moving.image, "moving"); }},
       {"warped", [&] { return image_picture(images.warped, "moving, warped to the fixed image"); }},
       {"checkerboard", [&] { return checkerboard_picture(fixed, images.warped, one_window); }},
-      {"difference", [&] { return difference_picture(fixed, before, images.warped); }},
+      {"difference", [&] { return difference_picture(fixed, images.before, images.warped); }},
       {"jacobian", [&] { return jacobian_picture(images.determinants); }},
+      {"strain", [&] { return strain_picture(images.strain); }},
       {"grid", [&] { return deformation_picture(input.moving.image, drawing); }},
   };
-  parallel_for(std::ssize(jobs), [&](std::int64_t i) {
-    const Job& job = jobs[static_cast<std::size_t>(i)];
-    output.write(std::string("pictures/") + job.name + ".png",
-                 [&](const Path& file) { write_picture(file, job.draw()); });
-  });
+  std::vector<std::function<void()>> jobs = std::move(further_jobs);
+  for (const auto& [name, draw] : pictures) {
+    jobs.push_back([&, file = std::string("pictures/") + name + ".png"] {
+      output.write(file, [&](const Path& path) { write_picture(path, draw()); });
+    });
+  }
+  parallel_for(std::ssize(jobs), [&](std::int64_t i) { jobs[static_cast<std::size_t>(i)](); });
 }
 
 #define CREASE_INSTANTIATE(Dim)                                                                    \
@@ -172,7 +171,8 @@ void write_pictures(const OutputFolder& output, const RegisterOptions& options,
                                    const RegisterImages<Dim>&);                                    \
   template void write_pictures<Dim>(const OutputFolder&, const RegisterOptions&,                   \
                                     const RegisterInput<Dim>&, const RegisterOutcome<Dim>&,        \
-                                    const RegisterImages<Dim>&);
+                                    const RegisterImages<Dim>&,                                    \
+                                    std::vector<std::function<void()>>);
 CREASE_INSTANTIATE(2)
 CREASE_INSTANTIATE(3)
 #undef CREASE_INSTANTIATE

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "Applications/OutputFolder.h"
 #include "Applications/RegisterInput.h"
 #include "Applications/RegisterRun.h"
@@ -12,6 +15,7 @@ namespace crease {
 template <int Dim>
 struct RegisterImages : TransformImages<Dim> {
   Image<float, Dim> warped;  ///< moving(T(x)); NaN outside the moving image
+  Image<float, Dim> before;  ///< moving(x), the same
 };
 
 template <int Dim>
@@ -30,10 +34,11 @@ void write_results(const OutputFolder& output, const RegisterOptions& options,
                    const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
                    const RegisterImages<Dim>& images);
 
-/// pictures/*.png for people.
+/// pictures/*.png for people, and further jobs at the same time, in parallel.
 template <int Dim>
 void write_pictures(const OutputFolder& output, const RegisterOptions& options,
                     const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
-                    const RegisterImages<Dim>& images);
+                    const RegisterImages<Dim>& images,
+                    std::vector<std::function<void()>> further_jobs = {});
 
 }  // namespace crease

@@ -56,8 +56,8 @@ double RunReport::elapsed_s() const {
   return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-std::string RunReport::to_json(const std::string& status,
-                               const nlohmann::ordered_json& figures) const {
+nlohmann::ordered_json RunReport::result(const std::string& status,
+                                         const nlohmann::ordered_json& figures) const {
   nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
   for (const Input& input : inputs_) {
     inputs.push_back({{"option", input.option}, {"file", input.file}, {"sha256", input.hash}});
@@ -77,8 +77,15 @@ std::string RunReport::to_json(const std::string& status,
       {"threads", threads_},
   };
   result.update(figures);
+  return result;
+}
+
+std::string RunReport::to_json(const std::string& status,
+                               const nlohmann::ordered_json& figures) const {
   constexpr int kIndent = 2;
-  return result.dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return result(status, figures)
+             .dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace) +
+         "\n";
 }
 
 }  // namespace crease

@@ -27,7 +27,9 @@ class RunReport {
 
   /// The common fields, then the figures of the subcommand.
   /// @param status  "ok", "gate_failed" or "not_converged".
-  /// @return the text of result.json.
+  nlohmann::ordered_json result(const std::string& status,
+                                const nlohmann::ordered_json& figures) const;
+  /// The same as the text of result.json.
   std::string to_json(const std::string& status, const nlohmann::ordered_json& figures) const;
 
  private:

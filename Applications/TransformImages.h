@@ -10,6 +10,7 @@ template <int Dim>
 struct TransformImages {
   DisplacementField<Dim> displacement;  ///< T(x) - x
   Image<float, Dim> determinants;       ///< of grad T
+  Image<float, Dim> strain;             ///< strain_norm() of grad T
   Mask<Dim> domain;                     ///< where T is defined by its spline
 };
 template <int Dim>

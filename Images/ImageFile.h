@@ -93,7 +93,7 @@ void write_displacement_field(const std::filesystem::path& path,
                               const DisplacementField<Dim>& field,
                               PixelType type = PixelType::kDouble);
 
-/// A picture: 3 bytes (red, green, blue) per pixel, rows from the top.
+/// A picture: 3 bytes (red, green, blue) per pixel, rows from the top. encode_png() gives the bytes alone.
 void write_rgb_png(const std::filesystem::path& path, int width, int height,
                    std::span<const std::uint8_t> bytes);
 

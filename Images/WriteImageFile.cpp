@@ -9,6 +9,7 @@
 #include "Images/Files/ItkImageFile.h"
 #include "Images/Files/PortableGraymap.h"
 #include "Images/ImageFile.h"
+#include "Images/PngEncoder.h"
 #include "Images/RasterCheck.h"
 
 namespace crease {
@@ -164,21 +165,10 @@ void write_displacement_field(const std::filesystem::path& path,
 
 void write_rgb_png(const std::filesystem::path& path, int width, int height,
                    std::span<const std::uint8_t> bytes) {
-  if (width < 1 || height < 1 || std::ssize(bytes) != std::int64_t{3} * width * height) {
-    throw InvalidInput(message(path.string(), ": a picture of ", width, " x ", height,
-                               " pixels has 3 bytes per pixel; there are ", bytes.size()));
-  }
   if (image_format(path) != ImageFormat::kPng) {
     throw InvalidInput(message(path.string(), ": pictures are written as .png"));
   }
-  RawImage raw;
-  raw.size = {width, height};
-  raw.set_plain_geometry(2);
-  raw.num_components = 3;
-  raw.colour = true;
-  raw.allocate();
-  std::ranges::copy(bytes, raw.values<std::uint8_t>());
-  write_raw(path, ImageFormat::kPng, raw);
+  write_whole_file(path, encode_png(width, height, 3, bytes));
 }
 
 #define CREASE_INSTANTIATE_PIXEL(Pixel, Dim)                                                    \

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <sstream>
 
 #include "Core/Error.h"
 #include "Images/IntensityRange.h"
 #include "Registration/PicturesCanvas.h"
+#include "Registration/PicturesScales.h"
 #include "Registration/PicturesSlices.h"
 
 namespace crease {
@@ -52,14 +51,6 @@ template <int Dim>
 Picture grey_panel(const Image<float, Dim>& image, const Slice<Dim>& slice,
                    const IntensityRange& window) {
   return coloured(pixels(image, slice), [&](int, int, float value) { return grey(value, window); });
-}
-
-// A short number: 0.25, 1.4, 12.
-std::string short_text(double value) {
-  std::ostringstream text;
-  text.precision(std::abs(value) >= 1 ? 3 : 2);
-  text << value;
-  return text.str();
 }
 
 template <int Dim>
@@ -117,6 +108,13 @@ Image<float, 2> flagged_pixels(const Image<float, Dim>& image, const Slice<Dim>&
   return flags;
 }
 
+Legend legend_of(const ColourScale& scale) {
+  Legend legend;
+  legend.colour = scale.colour;
+  legend.ticks = scale.ticks;
+  return legend;
+}
+
 bool undefined(float value) { return !std::isfinite(value); }
 
 constexpr Colour kFolded{57, 255, 20}, kUndefined{190, 190, 190};
@@ -128,52 +126,6 @@ Picture difference_panel(const Image<float, Dim>& difference, const Slice<Dim>& 
   return coloured(pixels(completed(difference, 0), slice), [&](int x, int y, float value) {
     return outside(x, y) > 0 ? kUndefined : canvas::diverging(value / scale);
   });
-}
-
-struct DeterminantSummary {
-  double minimum = std::numeric_limits<double>::infinity();
-  double maximum = -std::numeric_limits<double>::infinity();
-  std::int64_t folded = 0, defined = 0;
-};
-
-template <int Dim>
-DeterminantSummary summarize(const Image<float, Dim>& determinants) {
-  DeterminantSummary summary;
-  for (const double d : determinants.values()) {
-    if (!std::isfinite(d)) continue;
-    ++summary.defined;
-    summary.folded += d <= 0;
-    summary.minimum = std::min(summary.minimum, d);
-    summary.maximum = std::max(summary.maximum, d);
-  }
-  return summary;
-}
-
-// The colour scale's end R: colours run from 1/R to R.
-double determinant_scale(const DeterminantSummary& summary) {
-  double farthest = std::max(1.0, summary.maximum);
-  if (summary.minimum > 0) farthest = std::max(farthest, 1 / summary.minimum);
-  if (summary.folded > 0) farthest = std::max(farthest, 4.0);
-  for (const double scale : {1.1, 1.25, 1.5, 2.0, 3.0, 4.0}) {
-    if (farthest <= scale) return scale;
-  }
-  return 5;
-}
-
-Legend determinant_legend(double scale, bool folded) {
-  Legend legend;
-  legend.colour = [](double position) { return canvas::diverging(2 * position - 1); };
-  // between 1 and the end, a round number near the middle of the logarithmic scale
-  const double half = scale >= 3     ? 2
-                      : scale >= 2   ? 1.5
-                      : scale >= 1.5 ? 1.25
-                      : scale > 1.1  ? 1.1
-                                     : 1.05;
-  for (const double d : {1 / scale, 1 / half, 1.0, half, scale}) {
-    legend.ticks.emplace_back(0.5 + 0.5 * std::log(d) / std::log(scale), short_text(d));
-  }
-  if (folded) legend.swatches.emplace_back(kFolded, "folded");
-  return legend;
 }
 
 template <int Dim>
@@ -235,21 +187,14 @@ Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Di
   check_same_size(fixed, before, "moving");
   check_same_size(fixed, after, "warped");
   const Image<float, Dim> differences[] = {difference(fixed, before), difference(fixed, after)};
-  const IntensityRange range =
-      intensity_percentiles(completed(differences[0], 0), nullptr, 0.5, 99.5);
-  double scale = std::max(std::abs(range.lower), std::abs(range.upper));
-  if (!(scale > 0)) scale = 1;
-  Legend legend;
-  legend.colour = [](double position) { return canvas::diverging(2 * position - 1); };
-  for (const double t : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-    legend.ticks.emplace_back(0.5 + 0.5 * t, short_text(t * scale));
-  }
+  const ColourScale scale = difference_scale(differences[0]);
+  Legend legend = legend_of(scale);
   const char* const names[] = {"Before: moving - fixed", "After: warped - fixed"};
   Panels panels;
   for (const auto& slice : slices(fixed.raster())) {
     for (const int k : {0, 1}) {
       panels.emplace_back(joined(names[k], slice.name),
-                          difference_panel(differences[k], slice, scale));
+                          difference_panel(differences[k], slice, scale.upper));
     }
   }
   for (const auto& d : differences) {
@@ -258,26 +203,42 @@ Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Di
     }
   }
   return canvas::framed(panels, legend,
-                        {"rms difference before " + short_text(rms(differences[0])) + ", after " +
-                         short_text(rms(differences[1]))});
+                        {"rms difference before " + short_number(rms(differences[0])) + ", after " +
+                         short_number(rms(differences[1]))});
 }
 
 template <int Dim>
 Picture jacobian_picture(const Image<float, Dim>& determinants) {
-  const DeterminantSummary summary = summarize(determinants);
-  const double scale = determinant_scale(summary);
+  const DeterminantSummary summary = summarize_determinants(determinants);
+  const ColourScale scale = determinant_scale(summary);
+  Legend legend = legend_of(scale);
+  if (summary.folded > 0) legend.swatches.emplace_back(kFolded, "folded");
   Panels panels;
   for (const auto& slice : slices(determinants.raster())) {
     panels.emplace_back(joined("Jacobian det grad T", slice.name),
-                        determinant_panel(determinants, slice, scale));
+                        determinant_panel(determinants, slice, scale.upper));
   }
   std::string note = "no pixel has a value";
   if (summary.defined > 0) {
-    note =
-        message("smallest ", short_text(summary.minimum), ", largest ", short_text(summary.maximum),
-                "; ", summary.folded, " of ", summary.defined, " pixels folded");
+    note = message("smallest ", short_number(summary.minimum), ", largest ",
+                   short_number(summary.maximum), "; ", summary.folded, " of ", summary.defined,
+                   " pixels folded");
   }
-  return canvas::framed(panels, determinant_legend(scale, summary.folded > 0), {note});
+  return canvas::framed(panels, legend, {note});
+}
+
+template <int Dim>
+Picture strain_picture(const Image<float, Dim>& strain) {
+  const ColourScale scale = strain_scale(strain);
+  Panels panels;
+  for (const auto& slice : slices(strain.raster())) {
+    panels.emplace_back(joined("Strain |E| of T", slice.name),
+                        coloured(pixels(strain, slice), [&](int, int, float value) {
+                          return scale.colour(scale.position(value));
+                        }));
+  }
+  const double largest = intensity_range(strain).upper;
+  return canvas::framed(panels, legend_of(scale), {"largest " + short_number(largest)});
 }
 
 template Picture image_picture<2>(const Image<float, 2>&, const std::string&);
@@ -290,5 +251,7 @@ template Picture difference_picture<3>(const Image<float, 3>&, const Image<float
                                        const Image<float, 3>&);
 template Picture jacobian_picture<2>(const Image<float, 2>&);
 template Picture jacobian_picture<3>(const Image<float, 3>&);
+template Picture strain_picture<2>(const Image<float, 2>&);
+template Picture strain_picture<3>(const Image<float, 3>&);
 
 }  // namespace crease

@@ -51,6 +51,11 @@ Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Di
 template <int Dim>
 Picture jacobian_picture(const Image<float, Dim>& determinants);
 
+/// The strain of T, |E| with E the Green-St. Venant strain (StrainMap.h), from dark blue (0: rigid) over
+/// green to yellow.
+template <int Dim>
+Picture strain_picture(const Image<float, Dim>& strain);
+
 /// What to draw over the moving image.
 template <int Dim>
 struct DeformationDrawing {
@@ -81,6 +86,8 @@ extern template Picture difference_picture<3>(const Image<float, 3>&, const Imag
                                               const Image<float, 3>&);
 extern template Picture jacobian_picture<2>(const Image<float, 2>&);
 extern template Picture jacobian_picture<3>(const Image<float, 3>&);
+extern template Picture strain_picture<2>(const Image<float, 2>&);
+extern template Picture strain_picture<3>(const Image<float, 3>&);
 extern template Picture deformation_picture<2>(const Image<float, 2>&,
                                                const DeformationDrawing<2>&);
 extern template Picture deformation_picture<3>(const Image<float, 3>&,

@@ -69,6 +69,21 @@ void draw_legend(Picture& picture, const Legend& legend, int x, int top, int bot
   }
 }
 
+using Stops = std::array<std::array<double, 3>, 9>;
+
+/// The colour at 0 .. 1 between stops at equal distances.
+Colour between(const Stops& stops, double position) {
+  const double x = 8 * std::clamp(position, 0.0, 1.0);
+  const auto k = std::min<std::size_t>(static_cast<std::size_t>(x), 7);
+  const double share = x - static_cast<double>(k);
+  std::array<std::uint8_t, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    c[i] = static_cast<std::uint8_t>(
+        std::lround(stops[k][i] + share * (stops[k + 1][i] - stops[k][i])));
+  }
+  return {c[0], c[1], c[2]};
+}
+
 }  // namespace
 
 Picture blank(int width, int height, Colour colour) {
@@ -133,24 +148,30 @@ int text_width(const std::string& text, double scale) {
 
 Colour diverging(double t) {
   // ColorBrewer's RdBu from blue to red
-  constexpr std::array<std::array<double, 3>, 9> kStops = {{{5, 48, 97},
-                                                            {33, 102, 172},
-                                                            {67, 147, 195},
-                                                            {146, 197, 222},
-                                                            {247, 247, 247},
-                                                            {244, 165, 130},
-                                                            {214, 96, 77},
-                                                            {178, 24, 43},
-                                                            {103, 0, 31}}};
-  const double x = 4 * (std::clamp(t, -1.0, 1.0) + 1);
-  const auto k = std::min<std::size_t>(static_cast<std::size_t>(x), 7);
-  const double share = x - static_cast<double>(k);
-  std::array<std::uint8_t, 3> c;
-  for (std::size_t i = 0; i < 3; ++i) {
-    c[i] = static_cast<std::uint8_t>(
-        std::lround(kStops[k][i] + share * (kStops[k + 1][i] - kStops[k][i])));
-  }
-  return {c[0], c[1], c[2]};
+  constexpr Stops kStops = {{{5, 48, 97},
+                             {33, 102, 172},
+                             {67, 147, 195},
+                             {146, 197, 222},
+                             {247, 247, 247},
+                             {244, 165, 130},
+                             {214, 96, 77},
+                             {178, 24, 43},
+                             {103, 0, 31}}};
+  return between(kStops, 0.5 * (t + 1));
+}
+
+Colour sequential(double t) {
+  // matplotlib's viridis
+  constexpr Stops kStops = {{{68, 1, 84},
+                             {71, 45, 123},
+                             {59, 82, 139},
+                             {44, 114, 142},
+                             {33, 145, 140},
+                             {40, 174, 128},
+                             {94, 201, 98},
+                             {173, 220, 48},
+                             {253, 231, 37}}};
+  return between(kStops, t);
 }
 
 Picture framed(const std::vector<std::pair<std::string, Picture>>& panels, const Legend& legend,

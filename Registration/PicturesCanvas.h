@@ -17,7 +17,7 @@ struct Colour {
 };
 
 inline constexpr Colour kPaper{255, 255, 255};
-inline constexpr Colour kInk{30, 30, 34};
+inline constexpr Colour kInk{31, 31, 31};
 
 Picture blank(int width, int height, Colour colour);
 void set_pixel(Picture& picture, int x, int y, Colour colour);
@@ -38,6 +38,8 @@ int text_width(const std::string& text, double scale = 0.5);
 
 /// Blue over near-white to red for t = -1 .. 1.
 Colour diverging(double t);
+/// Dark blue over green to yellow for t = 0 .. 1, ever lighter: viridis.
+Colour sequential(double t);
 
 /// A vertical colour bar with ticks: position 0 (bottom) to 1 (top), and text.
 struct Legend {

@@ -5,6 +5,7 @@
 #include "Images/IntensityRange.h"
 #include "Registration/Pictures.h"
 #include "Registration/PicturesCanvas.h"
+#include "Registration/PicturesLines.h"
 #include "Registration/PicturesSlices.h"
 
 namespace crease {
@@ -16,58 +17,6 @@ constexpr Colour kGrid{70, 190, 230}, kMesh{95, 205, 190}, kFeature{255, 140, 0}
     kLandmark{255, 60, 170};
 constexpr double kDimmed = 0.85, kGamma = 0.75;  // grey levels of the image below the lines
 
-// Maps a line of the fixed image into the picture, in pieces of about 4 pixels; where the map has
-// no value the line is broken.
-template <int Dim>
-void draw_mapped(Picture& picture, const Slice<Dim>& slice, const Raster<Dim>& moving,
-                 const PointMap<Dim>& map, const std::vector<Point<Dim>>& line, Colour colour,
-                 int width) {
-  std::vector<Point<2>> drawn;
-  const auto flush = [&] {
-    if (drawn.size() > 1) canvas::draw_polyline(picture, drawn, false, colour, width);
-    drawn.clear();
-  };
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vector<Dim> edge = line[i + 1] - line[i];
-    const double length = (moving.point_to_index() * edge).norm() * slice.scale.maxCoeff();
-    const int pieces = std::max(1, static_cast<int>(std::ceil(length / 4)));
-    for (int k = i == 0 ? 0 : 1; k <= pieces; ++k) {
-      const Point<Dim> y = map(line[i] + edge * (double(k) / pieces));
-      if (y.allFinite()) {
-        drawn.push_back(slice.pixel(moving.index(y)));
-      } else {
-        flush();
-      }
-    }
-  }
-  flush();
-}
-
-// Lines of constant index along both axes of the slice, through the middle of the fixed raster.
-template <int Dim>
-std::vector<std::vector<Point<Dim>>> grid_lines(const Raster<Dim>& raster, const Slice<Dim>& slice,
-                                                int count) {
-  double longest = 0;
-  for (int a = 0; a < Dim; ++a) longest = std::max(longest, raster.size[a] * raster.spacing[a]);
-  const double step_mm = longest / count;
-  std::vector<std::vector<Point<Dim>>> lines;
-  for (const auto& [along, across] :
-       {std::pair(slice.first, slice.second), std::pair(slice.second, slice.first)}) {
-    const double step = step_mm / raster.spacing[across];
-    const int cells = std::max(1, static_cast<int>(raster.size[across] / step + 1e-6));
-    const double first = 0.5 * (raster.size[across] - cells * step) - 0.5;
-    for (int k = 0; k <= cells; ++k) {
-      Vector<Dim> start, end;
-      for (int a = 0; a < Dim; ++a) start[a] = end[a] = 0.5 * (raster.size[a] - 1);
-      start[across] = end[across] = first + k * step;
-      start[along] = -0.5;
-      end[along] = raster.size[along] - 0.5;
-      lines.push_back({raster.point(start), raster.point(end)});
-    }
-  }
-  return lines;
-}
-
 std::vector<std::vector<Point<2>>> mesh_edges(const SimplexMesh<2>& mesh) {
   std::set<std::pair<int, int>> edges;
   for (const auto& triangle : mesh.simplices) {
@@ -78,12 +27,6 @@ std::vector<std::vector<Point<2>>> mesh_edges(const SimplexMesh<2>& mesh) {
   std::vector<std::vector<Point<2>>> lines;
   for (const auto& [a, b] : edges) lines.push_back({mesh.vertices[a], mesh.vertices[b]});
   return lines;
-}
-
-std::vector<Point<2>> closed_points(const FeatureLine& line) {
-  std::vector<Point<2>> points = line.points;
-  if (line.closed) points.push_back(points.front());
-  return points;
 }
 
 template <int Dim>
@@ -132,7 +75,9 @@ Picture deformation_picture(const Image<float, Dim>& moving,
   for (const auto& slice : slices(moving.raster())) {
     Picture picture = dimmed_panel(moving, slice);
     const auto draw = [&](const std::vector<Point<Dim>>& line, Colour colour, int width) {
-      draw_mapped(picture, slice, moving.raster(), drawing.map, line, colour, width);
+      for (const auto& part : mapped_line(slice, moving.raster(), drawing.map, line)) {
+        canvas::draw_polyline(picture, part, false, colour, width);
+      }
     };
     if constexpr (Dim == 2) {
       if (drawing.mesh) {
@@ -140,7 +85,9 @@ Picture deformation_picture(const Image<float, Dim>& moving,
       }
     }
     if (!drawing.mesh && drawing.grid_lines > 0) {
-      for (const auto& line : grid_lines(drawing.fixed_raster, slice, drawing.grid_lines)) {
+      const int across = Dim == 2 ? 0 : 3 - slice.first - slice.second;
+      const double depth = 0.5 * (drawing.fixed_raster.size[across] - 1);
+      for (const auto& line : grid_lines(drawing.fixed_raster, slice, drawing.grid_lines, depth)) {
         draw(line, kGrid, 1);
       }
     }

@@ -62,7 +62,9 @@ struct LevelReport {
   int factorizations = 0;
   std::string stopped_because;
   std::map<std::string, double> terms_before, terms_after;  ///< unweighted, "image" the metric's
-  std::vector<double> energy_history;
+  std::vector<double> energy_history;  ///< weighted sum per iteration, the level's start included
+  /// Its weighted terms by name; without entries where the optimizer's last evaluation was another point.
+  std::vector<std::map<std::string, double>> term_history;
 };
 
 /// How a map was made invertible where that was asked for and it folded.

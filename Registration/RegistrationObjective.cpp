@@ -65,6 +65,17 @@ double RegistrationObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::Vector
 }
 
 template <int Dim>
+std::map<std::string, double> RegistrationObjective<Dim>::weighted_terms() const {
+  std::map<std::string, double> weighted;
+  for (const auto& [name, term] : terms_) weighted[name] = image_weight_ * term;
+  for (const auto& energy : energies_) {
+    const auto term = terms_.find(energy.name);
+    if (term != terms_.end()) weighted[energy.name] = energy.weight * term->second;
+  }
+  return weighted;
+}
+
+template <int Dim>
 double RegistrationObjective<Dim>::step_length(
     const Eigen::Ref<const Eigen::VectorXd>& step) const {
   if (image_ == nullptr) return ObjectiveFunction::step_length(step);

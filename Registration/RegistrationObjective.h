@@ -40,6 +40,8 @@ class RegistrationObjective final : public ObjectiveFunction {
 
   /// Unweighted terms of the last evaluation, by name; "image" is the metric.
   const std::map<std::string, double>& terms() const { return terms_; }
+  /// The same times their weights: they sum up to the value.
+  std::map<std::string, double> weighted_terms() const;
 
  private:
   std::shared_ptr<const HessianPattern> pattern_;

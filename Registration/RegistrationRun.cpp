@@ -31,6 +31,19 @@ Image<float, Dim> scaled(const Image<float, Dim>& image, double factor) {
   return result;
 }
 
+/// The weighted terms that the record's value sums up; none when the optimizer has evaluated another
+/// point since.
+template <int Dim>
+std::map<std::string, double> terms_of(const IterationRecord& record,
+                                       const RegistrationObjective<Dim>& cost) {
+  auto terms = cost.weighted_terms();
+  double sum = 0;
+  for (const auto& [name, term] : terms) sum += term;
+  constexpr double kRounding = 1e-9;
+  if (!(std::abs(sum - record.value) <= kRounding * std::abs(record.value))) terms.clear();
+  return terms;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -279,13 +292,13 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
 /// The first whole minimisation of a level. Of several starts the one is followed from which a few
 /// iterations lead to the lowest cost; a given optimizer goes on to its end from each.
 template <int Dim>
-OptimizerResult RegistrationRun<Dim>::minimise_from(const std::vector<Phi>& starts, std::size_t l,
-                                                    LevelReport& level) {
+typename RegistrationRun<Dim>::Round RegistrationRun<Dim>::minimise_from(
+    const std::vector<Phi>& starts, std::size_t l, LevelReport& level) {
   if (starts.size() == 1) return optimise_level(l, starts.front(), optimizer_of(l));
-  OptimizerResult best;
+  Round best;
   best.value = std::numeric_limits<double>::infinity();
   for (const Phi& start : starts) {
-    OptimizerResult found = optimise_level(l, start, optimizer_of(l, kTrialIterations));
+    Round found = optimise_level(l, start, optimizer_of(l, kTrialIterations));
     if (found.value < best.value) best = std::move(found);
   }
   if (parts_.optimizer != nullptr || cancelled_) return best;
@@ -294,22 +307,27 @@ OptimizerResult RegistrationRun<Dim>::minimise_from(const std::vector<Phi>& star
 }
 
 template <int Dim>
-OptimizerResult RegistrationRun<Dim>::optimise_level(
+typename RegistrationRun<Dim>::Round RegistrationRun<Dim>::optimise_level(
     std::size_t level, const Phi& start, const std::shared_ptr<const Optimizer>& optimizer) {
   const auto cost = objective(levels_[level]);
   const double value = cost->evaluate(start, nullptr, nullptr);
   if (value <= levels_[level].noise_floor) {
-    OptimizerResult rest;
+    Round rest;
     rest.x = start;
     rest.value = rest.initial_value = value;
     rest.reason = StopReason::kNoDecrease;
     rest.reason_text = "the images already match to rounding";
     return rest;
   }
-  return optimizer->minimize(*cost, start, null_space_.get(), [&](const IterationRecord& record) {
+  Round round;
+  const auto follow = [&](const IterationRecord& record) {
     tell("level", level, record.iteration, record.value);
+    round.weighted_terms.push_back(terms_of(record, *cost));
     return !cancelled_;
-  });
+  };
+  static_cast<OptimizerResult&>(round) =
+      optimizer->minimize(*cost, start, null_space_.get(), follow);
+  return round;
 }
 
 template <int Dim>
@@ -321,12 +339,14 @@ std::map<std::string, double> RegistrationRun<Dim>::terms_at(std::size_t level, 
 
 /// Books one minimisation of a level.
 template <int Dim>
-void RegistrationRun<Dim>::book(const OptimizerResult& round, LevelReport& level) {
+void RegistrationRun<Dim>::book(const Round& round, LevelReport& level) {
   level.iterations += round.iterations;
   level.evaluations += round.num_evaluations;
   level.factorizations += round.num_factorizations;
   level.stopped_because = result_.stopped_because = round.reason_text;
   for (const auto& record : round.history) level.energy_history.push_back(record.value);
+  level.term_history.insert(level.term_history.end(), round.weighted_terms.begin(),
+                            round.weighted_terms.end());
   result_.converged =
       round.reason != StopReason::kTimeLimit && round.reason != StopReason::kCancelled;
 }
@@ -338,7 +358,7 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::solve_level(
   LevelReport level;
   level.shrink = levels_[l].shrink;
   level.terms_before = terms_at(l, starts.front());
-  OptimizerResult round = minimise_from(starts, l, level);
+  Round round = minimise_from(starts, l, level);
   while (true) {
     book(round, level);
     if (round.reason == StopReason::kIterationLimit) {

@@ -22,6 +22,10 @@ class RegistrationRun {
 
  private:
   using Phi = Eigen::VectorXd;  // stacked control points
+  using Terms = std::map<std::string, double>;
+  struct Round : OptimizerResult {      // one minimisation
+    std::vector<Terms> weighted_terms;  // of `history`
+  };
   struct Level {
     int shrink = 1;
     std::shared_ptr<const BoundGrid<Dim>> grid;
@@ -49,8 +53,8 @@ class RegistrationRun {
   double correlated_samples(std::size_t level) const;
   void keep_better(const Phi& start, Phi& phi);
   Phi solve_level(std::size_t l, const std::vector<Phi>& starts);
-  OptimizerResult minimise_from(const std::vector<Phi>& starts, std::size_t l, LevelReport& level);
-  void book(const OptimizerResult& round, LevelReport& level);
+  Round minimise_from(const std::vector<Phi>& starts, std::size_t l, LevelReport& level);
+  void book(const Round& round, LevelReport& level);
   bool renew_weights(std::size_t l, const LevelReport& level, const Phi& phi);
   double determined_by_images(std::size_t l, const Phi& phi);
   BendingBalance balance_at(std::size_t l, const Phi& phi,
@@ -58,8 +62,8 @@ class RegistrationRun {
   void look_for_finer_places(const Phi& phi);
   bool folds(const Phi& phi) const;
   void make_invertible(const Phi& start, Phi& phi);
-  OptimizerResult optimise_level(std::size_t level, const Phi& start,
-                                 const std::shared_ptr<const Optimizer>& optimizer);
+  Round optimise_level(std::size_t level, const Phi& start,
+                       const std::shared_ptr<const Optimizer>& optimizer);
   void report(const Phi& phi);
 
   std::unique_ptr<RegistrationObjective<Dim>> objective(const Level& level) const;

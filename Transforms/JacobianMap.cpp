@@ -4,6 +4,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Transforms/StrainMap.h"
 
 namespace crease {
 
@@ -40,8 +41,9 @@ JacobianStatistics<Dim> JacobianMap<Dim>::statistics(std::span<const std::uint8_
 
 template <int Dim>
 JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster,
-                              ControlPoints<Dim>* displacement) {
+                              ControlPoints<Dim>* displacement, std::vector<double>* strain) {
   JacobianMap<Dim> result{raster, {}, {}};
+  if (strain) strain->resize(static_cast<std::size_t>(raster.num_samples()));
   if (displacement) displacement->resize(Dim, raster.num_samples());
   result.determinants.resize(static_cast<std::size_t>(raster.num_samples()));
   result.in_domain.resize(result.determinants.size());
@@ -55,6 +57,7 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
       result.determinants[n] = sample.jacobian.determinant();
       result.in_domain[n] = sample.in_domain ? 1 : 0;
       if (displacement) displacement->col(static_cast<Eigen::Index>(n)) = sample.point - x;
+      if (strain) (*strain)[n] = strain_norm<Dim>(sample.jacobian);
     }
   });
   return result;
@@ -62,7 +65,9 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
 
 template struct JacobianMap<2>;
 template struct JacobianMap<3>;
-template JacobianMap<2> jacobian_map(const Transform<2>&, const Raster<2>&, ControlPoints<2>*);
-template JacobianMap<3> jacobian_map(const Transform<3>&, const Raster<3>&, ControlPoints<3>*);
+template JacobianMap<2> jacobian_map(const Transform<2>&, const Raster<2>&, ControlPoints<2>*,
+                                     std::vector<double>*);
+template JacobianMap<3> jacobian_map(const Transform<3>&, const Raster<3>&, ControlPoints<3>*,
+                                     std::vector<double>*);
 
 }  // namespace crease

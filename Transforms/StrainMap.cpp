@@ -11,9 +11,8 @@ std::vector<double> strain_map(const Transform<Dim>& transform, const Raster<Dim
   parallel_for(raster.num_rows(), [&](std::int64_t row) {
     const Point<Dim> start = raster.row_start(row);
     for (int i = 0; i < raster.size[0]; ++i) {
-      const Matrix<Dim> f = transform.spatial_jacobian(start + i * step);
       strain[static_cast<std::size_t>(row * raster.size[0] + i)] =
-          0.5 * (f.transpose() * f - Matrix<Dim>::Identity()).norm();
+          strain_norm<Dim>(transform.spatial_jacobian(start + i * step));
     }
   });
   return strain;

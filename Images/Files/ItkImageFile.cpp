@@ -237,7 +237,6 @@ void write_with_itk(const std::filesystem::path& path, ImageFormat format, const
     io->SetComponentType(component_type(image.type));
     io->SetNumberOfComponents(static_cast<unsigned>(image.num_components));
     io->SetPixelType(image.num_components == 1 ? itk::IOPixelEnum::SCALAR
-                     : image.colour            ? itk::IOPixelEnum::RGB
                                                : itk::IOPixelEnum::VECTOR);
     // PNG is always compressed; the lowest level takes a third of the time for a tenth more bytes.
     io->SetUseCompression(format == ImageFormat::kPng);

@@ -174,6 +174,22 @@ TEST(Pictures, UndefinedDeterminantsAreGrey) {
   EXPECT_EQ(pixel(jacobian_picture(determinants), kLeft + 105, kTop + 105), (Rgb{190, 190, 190}));
 }
 
+// 99.9 % of the strains are within the scale; a stray one does not darken all others.
+TEST(Pictures, StrainRunsFromDarkBlueToYellow) {
+  Raster<2> raster;
+  raster.size = {56, 56};
+  Image<float, 2> strain(raster, 0.0f);
+  for (int j = 0; j < 56; ++j) {
+    for (int i = 28; i < 56; ++i) strain(i, j) = 0.5f;
+  }
+  strain(28, 28) = 40;
+  const Picture picture = strain_picture(strain);
+  expect_complete(picture);
+  EXPECT_EQ(pixel(picture, kLeft + 100, kTop + 100), (Rgb{68, 1, 84}));
+  EXPECT_EQ(pixel(picture, kLeft + 450, kTop + 100), (Rgb{253, 231, 37}));
+  expect_complete(strain_picture(waves<3>({8, 9, 10})));
+}
+
 TEST(Pictures, FeatureLinesAreDrawnWhereTheMapBringsThem) {
   const auto moving = waves<2>({100, 100});
   DeformationDrawing<2> drawing;
@@ -224,9 +240,11 @@ TEST(Pictures, WrittenFileIsAPngOfThatSize) {
   write_picture(path, picture);
   const ImageHeader header = read_image_header(path);
   EXPECT_EQ(header.format, ImageFormat::kPng);
-  EXPECT_EQ(header.num_components, 3);
+  EXPECT_EQ(header.num_components, 1);  // nothing in it has a colour
   EXPECT_EQ(header.size[0], picture.width);
   EXPECT_EQ(header.size[1], picture.height);
+  write_picture(path, jacobian_picture(waves<2>({64, 32})));
+  EXPECT_EQ(read_image_header(path).num_components, 3);
   EXPECT_THROW(write_picture("no/such/folder/picture.png", picture), FileError);
 }
 

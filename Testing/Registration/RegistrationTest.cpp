@@ -29,6 +29,27 @@ TEST(Registration, RecoversTheBlobs) {
   EXPECT_LT(result.metric_after, 0.02 * result.metric_before);
 }
 
+TEST(Registration, WeightedTermsSumUpToTheEnergyOfEveryIteration) {
+  const Phantom phantom = make_phantom("blobs", {.size = 64});
+  Registration<2> registration(phantom.fixed, phantom.moving);
+  registration.basis(tensor_basis(phantom.fixed.raster(), 16))
+      .energy("bending", 0.01, bending<2>())
+      .schedule({.levels = 2, .adapt_weights = true});
+  const auto result = registration.run();
+  int iterations = 0;
+  for (const LevelReport& level : result.levels) {
+    ASSERT_EQ(level.term_history.size(), level.energy_history.size());
+    for (std::size_t i = 0; i < level.energy_history.size(); ++i) {
+      const auto& terms = level.term_history[i];
+      ASSERT_EQ(terms.size(), 2u);
+      EXPECT_NEAR(terms.at("image") + terms.at("bending"), level.energy_history[i],
+                  1e-9 * level.energy_history[i]);
+      ++iterations;
+    }
+  }
+  EXPECT_GT(iterations, 4);
+}
+
 TEST(Registration, RefusesWhatItCannotRun) {
   const auto image = testing::scene_image<2>(testing::raster_of<2>(40));
   using ::testing::HasSubstr;

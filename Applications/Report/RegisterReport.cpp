@@ -1,0 +1,331 @@
+#include "Applications/Report/RegisterReport.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "Applications/EvaluationReport.h"
+
+namespace crease {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Statement = ReportHead::Statement;
+
+constexpr double kRoundingMm = 1e-9;
+
+std::string short_text(double value) { return fmt::format("{:.4g}", value); }
+
+/// With narrow spaces between the thousands.
+std::string count_text(std::int64_t count) {
+  std::string text = std::to_string(count);
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<std::size_t>(at), "\u202f");
+  }
+  return text;
+}
+
+/// With a minus sign, not a hyphen.
+std::string number_text(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text.front() == '-' ? "\u2212" + text.substr(1) : text;
+}
+
+/// A length in mm; what is but rounding is 0.
+std::string length_text(double mm) {
+  constexpr double kSmall = 1e-3;
+  if (mm < kRoundingMm) return "0";
+  return mm < kSmall ? fmt::format("{:.1e}", mm) : fmt::format("{:.4f}", mm);
+}
+
+template <typename Vector>
+std::string point_text(const Vector& p) {
+  std::string text;
+  for (Eigen::Index a = 0; a < p.size(); ++a) text += (a > 0 ? ", " : "") + number_text(p[a], 2);
+  return text;
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+Statement status_of(const std::string& status) {
+  if (status == "ok") return {ReportMood::kGood, "finished"};
+  if (status == "gate_failed") return {ReportMood::kBad, "finished, but a quality gate failed"};
+  return {ReportMood::kBad, "not converged"};
+}
+
+template <int Dim>
+Statement match_statement(const RegisterStory<Dim>& story) {
+  if (!story.options.has_metric()) {
+    return {ReportMood::kPlain, "No images were compared: the map follows landmarks alone."};
+  }
+  if (!story.outcome.improved) {
+    return {ReportMood::kBad, "The match did not improve."};
+  }
+  std::string text =
+      fmt::format("The match improved: {} {} \u2192 {}", story.options.metric,
+                  short_text(story.outcome.metric_before), short_text(story.outcome.metric_after));
+  if (const auto& match = story.evaluation.match; match && !std::isnan(match->ncc_before)) {
+    text += fmt::format(", correlation {:.4f} \u2192 {:.4f}", match->ncc_before, match->ncc_after);
+  }
+  return {ReportMood::kGood, text + "."};
+}
+
+template <int Dim>
+Statement fold_statement(const Evaluation<Dim>& evaluation) {
+  const auto& jacobian = evaluation.jacobian;
+  if (jacobian.folded > 0) {
+    std::string text = folding_text(jacobian, evaluation.samples) + ".";
+    text.front() = 'T';  // "the map folds ..."
+    return {ReportMood::kBad, text};
+  }
+  return {ReportMood::kGood,
+          fmt::format("No folds at {} samples: determinants from {} to {}.", evaluation.samples,
+                      short_text(jacobian.minimum), short_text(jacobian.maximum))};
+}
+
+Statement landmark_statement(const Json& landmarks, bool exact) {
+  const double largest = landmarks.at("max_error_mm");
+  const int count = landmarks.at("count");
+  constexpr double kRounding = 1e-6;  // mm
+  if (exact && largest < kRounding) {
+    return {ReportMood::kGood,
+            fmt::format("{} landmark pair{} met exactly.", count, count == 1 ? " is" : "s are")};
+  }
+  return {exact ? ReportMood::kCaution : ReportMood::kPlain,
+          fmt::format("{} landmark pairs: {:.3g} mm apart at most, rms {:.3g} mm.", count, largest,
+                      landmarks.at("rms_error_mm").get<double>())};
+}
+
+template <int Dim>
+std::vector<ReportHead::Figure> key_figures(const RegisterStory<Dim>& story) {
+  const auto& [options, input, outcome, evaluation, result, config] = story;
+  std::string size = count_text(outcome.free_parameters) + " parameters";
+  if (outcome.domain) {
+    size = fmt::format("{} triangles, {}", outcome.domain->mesh.mesh.simplices.size(), size);
+  }
+  std::vector<ReportHead::Figure> figures = {{"transform", options.transform, size}};
+  if (const auto& match = evaluation.match) {
+    const bool overlap = !std::isnan(match->ncc_before);
+    figures.push_back(
+        {"correlation (NCC)", fmt::format("{:.4f}", match->ncc_after),
+         overlap ? fmt::format("{:.4f} before", match->ncc_before) : "no overlap before"});
+    if (overlap && options.expects_equal_intensities()) {
+      figures.push_back({"squared difference", number_text(-match->ssd_reduction_percent, 1) + " %",
+                         "after against before"});
+    }
+  }
+  const auto& jacobian = evaluation.jacobian;
+  figures.push_back({"det \u2207T",
+                     fmt::format("{:.3g} \u2013 {:.3g}", jacobian.minimum, jacobian.maximum),
+                     fmt::format("{} folded samples", jacobian.folded)});
+  if (!input.landmarks.empty()) {
+    const double rms = result.at("landmarks").at("rms_error_mm");
+    figures.push_back({"landmarks, rms", fmt::format("{:.3g} mm", rms < kRoundingMm ? 0 : rms),
+                       fmt::format("{} pairs", input.landmarks.size())});
+  }
+  if (!evaluation.bodies.empty()) {
+    double worst = 0;
+    for (const auto& body : evaluation.bodies) worst = std::max(worst, body.rms_nonrigidity_mm);
+    figures.push_back({"bodies, from rigid", fmt::format("{:.2g} mm", worst),
+                       fmt::format("the worst of {}, rms", evaluation.bodies.size())});
+  }
+  int iterations = 0;
+  for (const LevelReport& level : outcome.levels) iterations += level.iterations;
+  figures.push_back(
+      {"iterations", std::to_string(iterations),
+       fmt::format("on {} level{}", outcome.levels.size(), outcome.levels.size() == 1 ? "" : "s")});
+  return figures;
+}
+
+template <int Dim>
+ReportHead head_of(const RegisterStory<Dim>& story) {
+  ReportHead head;
+  head.command = "crease register";
+  head.title = file_name(story.options.moving) + " registered to " + file_name(story.options.fixed);
+  head.status = status_of(story.result.at("status"));
+  head.verdict = {match_statement(story), fold_statement(story.evaluation)};
+  if (!story.input.landmarks.empty()) {
+    head.verdict.push_back(
+        landmark_statement(story.result.at("landmarks"), story.options.landmarks_mode == "exact"));
+  }
+  if (!story.outcome.converged) {
+    head.verdict.push_back(
+        {ReportMood::kBad, "The optimisation ended early: " + story.outcome.stopped_because + "."});
+  }
+  head.figures = key_figures(story);
+  head.warnings = story.result.at("warnings").template get<std::vector<std::string>>();
+  return head;
+}
+
+std::string level_name(const LevelReport& level, std::size_t number) {
+  return level.shrink > 1 ? fmt::format("level {}, 1:{}", number, level.shrink)
+                          : fmt::format("level {}", number);
+}
+
+/// Of the terms that weigh something, the image's first.
+std::vector<std::string> term_names(const std::map<std::string, double>& weights) {
+  std::vector<std::string> names;
+  for (const auto& [name, weight] : weights) {
+    if (weight > 0) names.insert(name == "image" ? names.begin() : names.end(), name);
+  }
+  return names;
+}
+
+/// Weighted sum and terms per iteration, level after level. Where a minimisation is taken up anew without
+/// a change of weights, its start is the point before.
+ReportPlot energy_plot(const std::vector<LevelReport>& levels,
+                       const std::map<std::string, double>& weights) {
+  ReportPlot plot{.title = "Energy per iteration: the weighted sum and its terms",
+                  .x_label = "iteration",
+                  .y_label = "energy, weighted",
+                  .sections = {},
+                  .curves = {{"sum", {}}}};
+  const std::vector<std::string> names = term_names(weights);
+  for (const auto& name : names) {
+    plot.curves.push_back({name == "image" ? "image metric" : name, {}});
+  }
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const auto& sums = levels[l].energy_history;
+    plot.sections.push_back({level_name(levels[l], l + 1), 0});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      constexpr double kRounding = 1e-12;
+      if (i > 0 && std::abs(sums[i] - sums[i - 1]) <= kRounding * std::abs(sums[i])) continue;
+      ++plot.sections.back().count;
+      plot.curves[0].values.emplace_back(sums[i]);
+      for (std::size_t n = 0; n < names.size(); ++n) {
+        const auto& terms = levels[l].term_history[i];
+        const auto term = terms.find(names[n]);
+        plot.curves[n + 1].values.push_back(term != terms.end() ? std::optional(term->second)
+                                                                : std::nullopt);
+      }
+    }
+  }
+  return plot;
+}
+
+template <int Dim>
+void add_optimisation(const RegisterStory<Dim>& story, HtmlReport& report) {
+  const auto& outcome = story.outcome;
+  report.begin_section("optimisation", "Optimisation");
+  const ReportPlot plot = energy_plot(outcome.levels, outcome.weights);
+  if (plot.curves.front().values.size() > 1) {
+    report.add_plot(plot);
+    report.add_note("A new weight of bending, found at the end of a level, makes the sum jump.");
+  }
+  ReportTable levels{.title = "Levels, from coarse to fine",
+                     .columns = {"level", "shrunk", "iterations", "evaluations", "stopped because"},
+                     .numbers = {1, 2, 3}};
+  for (std::size_t l = 0; l < outcome.levels.size(); ++l) {
+    const LevelReport& level = outcome.levels[l];
+    levels.rows.push_back(
+        {std::to_string(l + 1), fmt::format("1:{}", level.shrink), std::to_string(level.iterations),
+         std::to_string(level.evaluations),
+         level.stopped_because.empty() ? outcome.stopped_because : level.stopped_because});
+  }
+  report.add_table(levels);
+  ReportTable energies{.title = "Energies at the end",
+                       .columns = {"term", "energy", "weight"},
+                       .numbers = {1, 2},
+                       .note = "The image term is the metric as result.json gives it."};
+  for (const auto& [name, energy] : outcome.energies) {
+    const auto weight = outcome.weights.find(name);
+    energies.rows.push_back(
+        {name, fmt::format("{:.5g}", energy),
+         weight == outcome.weights.end() ? "\u2013" : fmt::format("{:.5g}", weight->second)});
+  }
+  report.add_table(energies);
+}
+
+template <int Dim>
+void add_landmarks(const RegisterStory<Dim>& story, HtmlReport& report) {
+  const Landmarks<Dim>& landmarks = story.input.landmarks;
+  if (landmarks.empty()) {
+    report.add_text("No landmarks were given.");
+    return;
+  }
+  ReportTable table{.title = "Landmarks, in mm",
+                    .columns = {"pair", "fixed", "moving", "apart before", "residual"},
+                    .numbers = {1, 2, 3, 4},
+                    .note = "Residual: from T(fixed) to moving."};
+  const Json& errors = story.result.at("landmarks").at("errors_mm");
+  for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
+    table.rows.push_back({std::to_string(j + 1), point_text(landmarks.fixed[j]),
+                          point_text(landmarks.moving[j]),
+                          fmt::format("{:.3f}", (landmarks.moving[j] - landmarks.fixed[j]).norm()),
+                          length_text(errors.at(j).template get<double>())});
+  }
+  report.add_table(table);
+}
+
+template <int Dim>
+void add_bodies(const RegisterStory<Dim>& story, HtmlReport& report) {
+  if (story.evaluation.bodies.empty()) {
+    report.add_text("No bodies were given or found.");
+    return;
+  }
+  ReportTable table{
+      .title = "Bodies and their best rigid fits",
+      .columns = {"body", "samples", "angle, degrees", "shift, mm", "from rigid, mm (rms)"},
+      .numbers = {1, 2, 3, 4}};
+  for (const auto& body : story.evaluation.bodies) {
+    table.rows.push_back({std::to_string(body.label), count_text(body.samples),
+                          number_text(body.angle_deg, 3), point_text(body.shift_mm),
+                          fmt::format("{:.4f}", body.rms_nonrigidity_mm)});
+  }
+  report.add_table(table);
+}
+
+template <int Dim>
+void add_run(const RegisterStory<Dim>& story, HtmlReport& report) {
+  const Json& result = story.result;
+  report.begin_section("run", "Run");
+  ReportTable inputs{.title = "Inputs", .columns = {"option", "file", "SHA-256"}};
+  for (const Json& input : result.at("inputs")) {
+    inputs.rows.push_back({"--" + input.at("option").get<std::string>(),
+                           input.at("file").get<std::string>(),
+                           input.at("sha256").get<std::string>()});
+  }
+  report.add_table(inputs);
+  report.add_code(
+      "Effective configuration (config.toml): crease register --config config.toml "
+      "repeats the run",
+      story.config);
+  ReportTable run{
+      .title = "Time and memory", .columns = {"what", "value"}, .numbers = {1}, .varies = true};
+  for (const auto& [stage, seconds] : result.at("timings_s").items()) {
+    run.rows.push_back({stage, fmt::format("{:.3f} s", seconds.template get<double>())});
+  }
+  run.rows.push_back(
+      {"peak memory",
+       fmt::format("{:.0f} MB", result.at("peak_memory_mb").template get<double>())});
+  run.rows.push_back({"threads", result.at("threads").dump()});
+  report.add_table(run);
+  ReportTable notes{.title = "Notes on the mesh", .columns = {"note"}};
+  for (const Json& note : result.at("notes")) notes.rows.push_back({note.get<std::string>()});
+  if (!notes.rows.empty()) report.add_table(notes);
+  report.add_text("Made by crease " + result.at("version").get<std::string>() + ".");
+}
+
+}  // namespace
+
+template <int Dim>
+std::string register_report(const RegisterStory<Dim>& story, RegisterStacks<Dim>& stacks) {
+  HtmlReport report(head_of(story));
+  stacks.add_to(report);
+  add_optimisation(story, report);
+  report.begin_section("landmarks", "Landmarks and bodies");
+  add_landmarks(story, report);
+  add_bodies(story, report);
+  add_run(story, report);
+  return report.html();
+}
+
+template std::string register_report<2>(const RegisterStory<2>&, RegisterStacks<2>&);
+template std::string register_report<3>(const RegisterStory<3>&, RegisterStacks<3>&);
+
+}  // namespace crease

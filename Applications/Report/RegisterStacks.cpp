@@ -1,0 +1,343 @@
+#include "Applications/Report/RegisterStacks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "Applications/Report/ReportPlaces.h"
+#include "Images/IntensityRange.h"
+#include "Registration/PicturesLines.h"
+
+namespace crease {
+namespace {
+
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+template <int Dim>
+bool same_raster(const Raster<Dim>& a, const Raster<Dim>& b) {
+  constexpr double kShare = 1e-6;  // of a pixel
+  return a.size == b.size && (a.origin - b.origin).norm() < kShare * a.spacing.minCoeff() &&
+         (a.index_to_point() - b.index_to_point()).norm() < kShare * a.spacing.minCoeff();
+}
+
+/// Pixels from the 1 % to the 99 % percentile, as in the pictures.
+template <int Dim>
+ReportScale window(Image<float, Dim> image) {
+  for (float& v : image.values()) {
+    if (!std::isfinite(v)) v = 0;
+  }
+  const IntensityRange range = intensity_percentiles(image);
+  return grey_scale(range.lower, range.upper, "intensity");
+}
+
+template <int Dim>
+Image<float, Dim> difference(const Image<float, Dim>& a, const Image<float, Dim>& b) {
+  Image<float, Dim> result(a.raster());
+  std::ranges::transform(a.values(), b.values(), result.values().begin(), std::minus<>());
+  return result;
+}
+
+template <int Dim>
+Image<float, Dim> within(const Image<float, Dim>& image, const Mask<Dim>& mask) {
+  Image<float, Dim> result = image;
+  for (std::size_t n = 0; n < mask.values().size(); ++n) {
+    if (!mask.values()[n]) result.values()[n] = kNoValue;
+  }
+  return result;
+}
+
+template <int Dim>
+std::string text_of(const Point<Dim>& point) {
+  std::string text = "(";
+  for (int a = 0; a < Dim; ++a) text += fmt::format("{}{:.1f}", a > 0 ? ", " : "", point[a]);
+  return text + ") mm";
+}
+
+/// One empty drawing per slice.
+template <int Dim>
+std::vector<std::vector<ReportOverlay::Drawing>> empty_drawings(const ReportPlanes<Dim>& planes) {
+  std::vector<std::vector<ReportOverlay::Drawing>> drawings;
+  for (int p = 0; p < planes.num_planes(); ++p) drawings.emplace_back(planes.slices(p).size());
+  return drawings;
+}
+
+/// A mark where a point lies, in the slice of each plane that comes nearest.
+template <int Dim>
+void add_mark(const ReportPlanes<Dim>& planes, const Point<Dim>& at, bool ring,
+              const std::string& label, ReportOverlay& overlay) {
+  for (int p = 0; p < planes.num_planes(); ++p) {
+    if (const auto spot = planes.spot(p, at)) {
+      overlay.drawing(p, spot->slice).marks.push_back({spot->pixel, ring, label});
+    }
+  }
+}
+
+/// Numbers for so few landmarks that they can be read.
+std::string landmark_label(int number, int count) {
+  constexpr int kMostLabels = 60;
+  return count <= kMostLabels ? std::to_string(number + 1) : "";
+}
+
+}  // namespace
+
+template <int Dim>
+RegisterStacks<Dim>::RegisterStacks(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                    const RegisterOutcome<Dim>& outcome,
+                                    const RegisterImages<Dim>& images)
+    : options_(options),
+      input_(input),
+      outcome_(outcome),
+      images_(images),
+      fixed_(input.fixed.image.raster()) {
+  if (!same_raster(fixed_.raster, input.moving.image.raster())) {
+    moving_.emplace(input.moving.image.raster());
+  }
+  add_images();
+  if (options.expects_equal_intensities()) add_differences();
+  add_maps();
+  add_outlines();
+  add_deformation();
+}
+
+template <int Dim>
+int RegisterStacks<Dim>::add_layer(Stack& stack, const std::string& name, const ReportScale& scale,
+                                   const PixelMaker& pixels) {
+  const int layer = static_cast<int>(stack.shown.layers.size());
+  stack.shown.layers.push_back({name, scale, {}});
+  jobs_.push_back([&stack, layer, pixels] {
+    ReportLayer& to = stack.shown.layers[static_cast<std::size_t>(layer)];
+    to.png = stack.planes.encode(pixels(), to.scale);
+  });
+  return layer;
+}
+
+template <int Dim>
+int RegisterStacks<Dim>::add_overlay(Stack& stack, const std::string& name,
+                                     ReportOverlay::Look look,
+                                     const std::function<void(ReportOverlay&)>& draw) {
+  const int overlay = static_cast<int>(stack.shown.overlays.size());
+  stack.shown.overlays.push_back({name, look, empty_drawings(stack.planes)});
+  jobs_.push_back(
+      [&stack, overlay, draw] { draw(stack.shown.overlays[static_cast<std::size_t>(overlay)]); });
+  return overlay;
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::add_images() {
+  const ReportScale fixed = window(input_.fixed.image);
+  const ReportScale moving =
+      options_.expects_equal_intensities() ? fixed : window(input_.moving.image);
+  greys_ = {add_layer(fixed_, "fixed", fixed, [this] { return input_.fixed.image; }),
+            add_layer(fixed_, "moving, before", moving, [this] { return images_.before; }),
+            add_layer(fixed_, "warped", moving, [this] { return images_.warped; })};
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::add_differences() {
+  const ReportScale scale =
+      report_scale(difference_scale(difference(images_.before, input_.fixed.image)),
+                   "difference of intensities");
+  differences_ = {add_layer(fixed_, "before: moving \u2212 fixed", scale,
+                            [this] { return difference(images_.before, input_.fixed.image); }),
+                  add_layer(fixed_, "after: warped \u2212 fixed", scale,
+                            [this] { return difference(images_.warped, input_.fixed.image); })};
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::add_maps() {
+  ReportScale determinants = report_scale(
+      determinant_scale(summarize_determinants(within(images_.determinants, images_.domain))),
+      "det \u2207T, no unit: 1 keeps area");
+  if (Dim == 3) determinants.label = "det \u2207T, no unit: 1 keeps volume";
+  determinants.first = 2;
+  determinants.special = "folded";
+  determinants.special_colour = "#39ff14";
+  const ReportScale strain = report_scale(strain_scale(images_.strain), "|E|, no unit: 0 is rigid");
+  maps_ = {add_layer(fixed_, "Jacobian determinant", determinants,
+                     [this] { return within(images_.determinants, images_.domain); }),
+           add_layer(fixed_, "strain", strain,
+                     [this] { return within(images_.strain, images_.domain); })};
+  fixed_.shown.overlays.push_back(
+      {"extreme places", ReportOverlay::Look::kPlace, empty_drawings(fixed_.planes)});
+  places_overlay_ = static_cast<int>(fixed_.shown.overlays.size()) - 1;
+  jobs_.push_back([this] { find_places(); });
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::find_places() {
+  ReportOverlay& overlay = fixed_.shown.overlays[static_cast<std::size_t>(places_overlay_)];
+  const auto add = [&](const Image<float, Dim>& image, bool largest, const char* what) {
+    constexpr int kCount = 2;
+    for (const auto& extreme : extremes(image, images_.domain, largest, kCount)) {
+      const std::string number = std::to_string(places_.size() + 1);
+      ReportPlace place{
+          fmt::format("{}: {} {:.4g} at {}", number, what, extreme.value, text_of<Dim>(extreme.at)),
+          {}};
+      for (int p = 0; p < fixed_.planes.num_planes(); ++p) {
+        place.slices.push_back(fixed_.planes.spot(p, extreme.at)->slice);
+      }
+      places_.push_back(place);
+      add_mark(fixed_.planes, extreme.at, true, number, overlay);
+    }
+  };
+  add(images_.determinants, false, "small determinant");
+  add(images_.determinants, true, "large determinant");
+  add(images_.strain, true, "strain");
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::draw_features(const Stack& stack, const PointMap<Dim>& map,
+                                        ReportOverlay& overlay) const {
+  if constexpr (Dim == 2) {
+    const Slice<2>& slice = stack.planes.slices(0).front();
+    for (const FeatureLine& line : outcome_.domain->feature_lines) {
+      for (auto& part : mapped_line(slice, stack.raster, map, closed_points(line))) {
+        overlay.drawing(0, 0).lines.push_back(std::move(part));
+      }
+    }
+  }
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::add_outlines() {
+  if (outcome_.domain && !outcome_.domain->feature_lines.empty()) {
+    outlines_.push_back(
+        add_overlay(fixed_, "feature lines", ReportOverlay::Look::kFeature, [this](auto& overlay) {
+          draw_features(
+              fixed_, [](const Point<Dim>& x) { return x; }, overlay);
+        }));
+  }
+  if (!input_.landmarks.empty()) {
+    landmarks_.push_back(
+        add_overlay(fixed_, "landmarks", ReportOverlay::Look::kLandmark, [this](auto& overlay) {
+          for (int j = 0; j < input_.landmarks.size(); ++j) {
+            add_mark(fixed_.planes, input_.landmarks.fixed[static_cast<std::size_t>(j)], false,
+                     landmark_label(j, input_.landmarks.size()), overlay);
+          }
+        }));
+  }
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) const {
+  constexpr int kLines = Dim == 2 ? 32 : 20;
+  const Raster<Dim>& fixed = fixed_.raster;
+  const PointMap<Dim> map = displacement_map(images_.displacement);
+  for (int p = 0; p < stack.planes.num_planes(); ++p) {
+    const auto& slices = stack.planes.slices(p);
+    for (std::size_t s = 0; s < slices.size(); ++s) {
+      const Slice<Dim>& slice = slices[s];
+      double depth = 0;
+      if constexpr (Dim == 3) {  // where the other raster's slice lies, as a share of its sides
+        const int across = 3 - slice.first - slice.second;
+        depth = (slice.middle[across] + 0.5) / stack.raster.size[across] * fixed.size[across] - 0.5;
+      }
+      const double step = std::max(slice.width, slice.height) / (Dim == 2 ? 150.0 : 36.0);
+      for (const auto& line : grid_lines(fixed, slice, kLines, depth)) {
+        for (auto& part : mapped_line(slice, stack.raster, map, line, step)) {
+          overlay.drawing(p, static_cast<int>(s)).lines.push_back(std::move(part));
+        }
+      }
+    }
+  }
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::add_deformation() {
+  Stack& stack = moving_ ? *moving_ : fixed_;
+  deformed_layer_ = moving_ ? add_layer(stack, "moving", window(input_.moving.image),
+                                        [this] { return input_.moving.image; })
+                            : greys_[1];
+  deformed_overlays_ = {add_overlay(stack, "deformed grid", ReportOverlay::Look::kGrid,
+                                    [this, &stack](auto& overlay) { draw_grid(stack, overlay); })};
+  const PointMap<Dim> map = [this](const Point<Dim>& x) { return outcome_.transform->map(x); };
+  if (outcome_.domain && !outcome_.domain->feature_lines.empty()) {
+    deformed_overlays_.push_back(
+        add_overlay(stack, "feature lines", ReportOverlay::Look::kFeature,
+                    [this, &stack, map](auto& overlay) { draw_features(stack, map, overlay); }));
+  }
+  if (input_.landmarks.empty()) return;
+  deformed_overlays_.push_back(
+      add_overlay(stack, "landmarks (ring: given, cross: mapped)", ReportOverlay::Look::kLandmark,
+                  [this, &stack](auto& overlay) { draw_landmarks(stack, overlay); }));
+}
+
+/// Where T carries a fixed landmark is drawn in the slice of its partner.
+template <int Dim>
+void RegisterStacks<Dim>::draw_landmarks(const Stack& stack, ReportOverlay& overlay) const {
+  const Landmarks<Dim>& landmarks = input_.landmarks;
+  for (int p = 0; p < stack.planes.num_planes(); ++p) {
+    for (int j = 0; j < landmarks.size(); ++j) {
+      const auto n = static_cast<std::size_t>(j);
+      const auto given = stack.planes.spot(p, landmarks.moving[n]);
+      if (!given) continue;
+      auto& marks = overlay.drawing(p, given->slice).marks;
+      marks.push_back({given->pixel, true, landmark_label(j, landmarks.size())});
+      const auto mapped = stack.planes.spot(p, outcome_.transform->map(landmarks.fixed[n]));
+      if (mapped) marks.push_back({mapped->pixel, false, ""});
+    }
+  }
+}
+
+template <int Dim>
+void RegisterStacks<Dim>::add_to(HtmlReport& report) {
+  const int fixed = report.add_stack(std::move(fixed_.shown));
+  const int moving = moving_ ? report.add_stack(std::move(moving_->shown)) : fixed;
+  using Kind = ReportViewer::Kind;
+  std::vector<int> both = outlines_;
+  both.insert(both.end(), landmarks_.begin(), landmarks_.end());
+  report.begin_section("compare", "Compare");
+  report.add_viewer({.kind = Kind::kCompare,
+                     .stack = fixed,
+                     .title = "Fixed, moving and warped image",
+                     .layers = greys_,
+                     .more_overlays = both,
+                     .note =
+                         "Swipe: structures must run on across the divider. Flicker: what "
+                         "jumps does not match. Hatched: the moving image has no value there."});
+  report.begin_section("difference", "Difference");
+  if (differences_.empty()) {
+    report.add_text(
+        "Intensities of the two images mean different things under this metric, so that "
+        "their difference would say nothing; compare them by the checkerboard.");
+  } else {
+    report.add_viewer(
+        {.stack = fixed,
+         .title = "Differences before and after, in one scale",
+         .layers = differences_,
+         .overlays = outlines_,
+         .more_overlays = landmarks_,
+         .contrast = true,
+         .note =
+             "What is left after should look like noise. A pair of blue and red along an edge is "
+             "a shift; a patch of one colour is a change of intensity, which no map can mend."});
+  }
+  report.begin_section("deformation", "Deformation");
+  report.add_viewer({.stack = moving,
+                     .title = "The fixed image's square grid, carried by T onto the moving image",
+                     .layers = {deformed_layer_},
+                     .overlays = deformed_overlays_,
+                     .note = "Rigid bodies keep their squares; lines may bend sharply at feature "
+                             "lines and should be smooth elsewhere."});
+  report.begin_section("jacobian", "Jacobian and strain");
+  std::vector<int> overlays = outlines_;
+  overlays.push_back(places_overlay_);
+  report.add_viewer(
+      {.stack = fixed,
+       .title = "How much T grows, shrinks and strains tissue",
+       .layers = maps_,
+       .overlays = overlays,
+       .more_overlays = landmarks_,
+       .places = places_,
+       .note = "det \u2207T: blue shrinks and red grows from the fixed to the moving image, below "
+               "0 the "
+               "map folds. |E|: size of the Green strain \u00bd(\u2207T\u1d40\u2207T \u2212 1)."});
+}
+
+template class RegisterStacks<2>;
+template class RegisterStacks<3>;
+
+}  // namespace crease

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "Applications/RegisterOutput.h"
+#include "Applications/Report/HtmlReport.h"
+#include "Applications/Report/ReportPlanes.h"
+
+namespace crease {
+
+/// The pixels of a registration's report: fixed, moving and warped image, their differences, determinants
+/// and strain on the fixed raster, and the grid that T deforms over the moving image.
+///
+/// They are made by jobs, which depend on nothing but what is passed in (that must stay alive) and may run in
+/// parallel with others.
+template <int Dim>
+class RegisterStacks {
+ public:
+  RegisterStacks(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                 const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images);
+  RegisterStacks(const RegisterStacks&) = delete;
+  RegisterStacks& operator=(const RegisterStacks&) = delete;
+
+  /// To be run once each, in any order.
+  const std::vector<std::function<void()>>& jobs() const { return jobs_; }
+  /// After the jobs, once: sections that show the pixels.
+  void add_to(HtmlReport& report);
+
+ private:
+  using PixelMaker = std::function<Image<float, Dim>()>;
+  static constexpr int kFixedStack = 0, kMovingStack = 1;
+  struct Stack {
+    explicit Stack(const Raster<Dim>& on) : raster(on), planes(on) {
+      shown.planes = planes.planes();
+      shown.note = planes.note();
+    }
+    Raster<Dim> raster;
+    ReportPlanes<Dim> planes;
+    ReportStack shown;
+  };
+
+  /// @return the layer's number; its pixels are made by a job.
+  int add_layer(Stack& stack, const std::string& name, const ReportScale& scale,
+                const PixelMaker& pixels);
+  /// @return the overlay's number. The drawings are made by a job.
+  int add_overlay(Stack& stack, const std::string& name, ReportOverlay::Look look,
+                  const std::function<void(ReportOverlay&)>& draw);
+  void add_images();
+  void add_differences();
+  void add_maps();
+  void add_outlines();
+  void add_deformation();
+  void find_places();
+  void draw_grid(const Stack& stack, ReportOverlay& overlay) const;
+  void draw_landmarks(const Stack& stack, ReportOverlay& overlay) const;
+  void draw_features(const Stack& stack, const PointMap<Dim>& map, ReportOverlay& overlay) const;
+
+  const RegisterOptions& options_;
+  const RegisterInput<Dim>& input_;
+  const RegisterOutcome<Dim>& outcome_;
+  const RegisterImages<Dim>& images_;
+  Stack fixed_;
+  std::optional<Stack> moving_;  // where the moving image lies on a raster of its own
+  std::vector<int> greys_, differences_, maps_;  // layers of the fixed stack
+  std::vector<int> outlines_, landmarks_;        // overlays of the fixed stack
+  int places_overlay_ = 0;
+  int deformed_layer_ = 0;  // of the stack that shows the deformed grid
+  std::vector<int> deformed_overlays_;
+  std::vector<ReportPlace> places_;
+  std::vector<std::function<void()>> jobs_;
+};
+
+extern template class RegisterStacks<2>;
+extern template class RegisterStacks<3>;
+
+}  // namespace crease

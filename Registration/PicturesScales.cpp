@@ -91,8 +91,9 @@ ColourScale determinant_scale(const DeterminantSummary& summary) {
 template <int Dim>
 ColourScale strain_scale(const Image<float, Dim>& strain) {
   constexpr double kSmallest = 1e-3;  // below that a map is rigid to the eye
+  constexpr double kLargest = 2;      // beyond that it is beyond belief
   const double high = intensity_percentiles(finite(strain), nullptr, 0, 99.9).upper;
-  ColourScale scale{.upper = rounded_up(std::max(high, kSmallest))};
+  ColourScale scale{.upper = rounded_up(std::clamp(high, kSmallest, kLargest))};
   for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     scale.ticks.emplace_back(t, short_number(t * scale.upper));
   }

@@ -36,7 +36,7 @@ DeterminantSummary summarize_determinants(const Image<float, Dim>& determinants)
 /// Blue over white to red in equal ratios from 1/R to R, R between 1.1 and 5.
 ColourScale determinant_scale(const DeterminantSummary& summary);
 
-/// Dark blue over green to yellow (viridis) from 0 to a round number that exceeds 99.9 % of the strains.
+/// Dark blue over green to yellow (viridis) from 0 to a round number that exceeds 99.9 % of the strains, 2 at most.
 template <int Dim>
 ColourScale strain_scale(const Image<float, Dim>& strain);
 

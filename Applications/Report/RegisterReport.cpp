@@ -17,7 +17,12 @@ using Statement = ReportHead::Statement;
 
 constexpr double kRoundingMm = 1e-9;
 
-std::string short_text(double value) { return fmt::format("{:.4g}", value); }
+/// With a minus sign for a hyphen in front.
+std::string with_sign(const std::string& text) {
+  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+}
+
+std::string short_text(double value) { return with_sign(fmt::format("{:.4g}", value)); }
 
 /// With narrow spaces between the thousands.
 std::string count_text(std::int64_t count) {
@@ -28,10 +33,8 @@ std::string count_text(std::int64_t count) {
   return text;
 }
 
-/// With a minus sign, not a hyphen.
 std::string number_text(double value, int decimals) {
-  std::string text = fmt::format("{:.{}f}", value, decimals);
-  return text.front() == '-' ? "\u2212" + text.substr(1) : text;
+  return with_sign(fmt::format("{:.{}f}", value, decimals));
 }
 
 /// A length in mm; what is but rounding is 0.
@@ -121,7 +124,7 @@ std::vector<ReportHead::Figure> key_figures(const RegisterStory<Dim>& story) {
   }
   const auto& jacobian = evaluation.jacobian;
   figures.push_back({"det \u2207T",
-                     fmt::format("{:.3g} \u2013 {:.3g}", jacobian.minimum, jacobian.maximum),
+                     with_sign(fmt::format("{:.3g} to {:.3g}", jacobian.minimum, jacobian.maximum)),
                      fmt::format("{} folded samples", jacobian.folded)});
   if (!input.landmarks.empty()) {
     const double rms = result.at("landmarks").at("rms_error_mm");
@@ -136,9 +139,11 @@ std::vector<ReportHead::Figure> key_figures(const RegisterStory<Dim>& story) {
   }
   int iterations = 0;
   for (const LevelReport& level : outcome.levels) iterations += level.iterations;
-  figures.push_back(
-      {"iterations", std::to_string(iterations),
-       fmt::format("on {} level{}", outcome.levels.size(), outcome.levels.size() == 1 ? "" : "s")});
+  const std::size_t levels = outcome.levels.size();
+  figures.push_back({options.is_spline() ? "iterations" : "evaluations", std::to_string(iterations),
+                     options.is_spline()
+                         ? fmt::format("on {} level{}", levels, levels == 1 ? "" : "s")
+                         : "of the metric"});
   return figures;
 }
 
@@ -156,6 +161,10 @@ ReportHead head_of(const RegisterStory<Dim>& story) {
   if (!story.outcome.converged) {
     head.verdict.push_back(
         {ReportMood::kBad, "The optimisation ended early: " + story.outcome.stopped_because + "."});
+  }
+  const auto is_bad = [](const Statement& statement) { return statement.mood == ReportMood::kBad; };
+  if (head.status.mood == ReportMood::kGood && std::ranges::any_of(head.verdict, is_bad)) {
+    head.status.mood = ReportMood::kCaution;
   }
   head.figures = key_figures(story);
   head.warnings = story.result.at("warnings").template get<std::vector<std::string>>();
@@ -212,6 +221,11 @@ template <int Dim>
 void add_optimisation(const RegisterStory<Dim>& story, HtmlReport& report) {
   const auto& outcome = story.outcome;
   report.begin_section("optimisation", "Optimisation");
+  if (!story.options.is_spline()) {
+    report.add_text("This transform is found by a search, not by levels of iterations: " +
+                    outcome.stopped_because + ".");
+    return;
+  }
   const ReportPlot plot = energy_plot(outcome.levels, outcome.weights);
   if (plot.curves.front().values.size() > 1) {
     report.add_plot(plot);

@@ -27,6 +27,9 @@
     return String(Number(value.toPrecision(digits))).replace('-', '\u2212');
   };
 
+  /// Minus signs in place of hyphens before numbers.
+  const signs = (text) => text.replace(/(^|[\s(])-(?=[\d.])/g, '$1\u2212');
+
   // ---- theme: what the system wants, unless one is chosen
 
   const dark = matchMedia('(prefers-color-scheme: dark)');
@@ -497,16 +500,17 @@
       this.selects.forEach((select, side) => { select.value = this.layers[side]; });
       const [sheet] = this.sheets;
       await Promise.all(this.layers.map((layer, side) => sheet.paint(side, layer)));
-      if (this.mode === 'checkerboard') this.cutTiles(sheet.canvases[1]);
+      if (this.mode === 'checkerboard') sheet.canvases.forEach((canvas, side) => this.cutTiles(canvas, side));
       this.show();
     }
-    cutTiles(canvas) {
+    /// Clears every other tile: those of the first layer where the second one shows, and the other way round.
+    cutTiles(canvas, side) {
       const { width, height, widthMm, heightMm } = this.stack.shown();
-      const side = Math.max(widthMm, heightMm) / this.modes.checkerboard.get();
-      const [dx, dy] = [side * width / widthMm, side * height / heightMm];
+      const tile = Math.max(widthMm, heightMm) / this.modes.checkerboard.get();
+      const [dx, dy] = [tile * width / widthMm, tile * height / heightMm];
       const context = canvas.getContext('2d');
       for (let j = 0; j * dy < height; ++j) {
-        for (let i = j % 2; i * dx < width; i += 2) {
+        for (let i = (j + side + 1) % 2; i * dx < width; i += 2) {
           const [x, y] = [Math.round(i * dx), Math.round(j * dy)];
           context.clearRect(x, y, Math.round((i + 1) * dx) - x, Math.round((j + 1) * dy) - y);
         }
@@ -529,9 +533,15 @@
       above.style.clipPath = is('swipe') ? `inset(0 0 0 ${at}%)` : '';
       above.style.opacity = is('blend') ? this.modes.blend.get() / 100 : 1;
       const names = this.layers.map((layer) => this.stack.layers[layer].name);
-      this.chips[0].textContent = is('flicker') ? names[this.front ? 1 : 0] : names[0];
+      const share = this.modes.blend.get();
+      this.chips[0].textContent = {
+        swipe: names[0],
+        flicker: names[this.front ? 1 : 0],
+        blend: `${100 - share} % ${names[0]}, ${share} % ${names[1]}`,
+        checkerboard: `${names[0]} and ${names[1]} in turn`,
+      }[this.mode];
       this.chips[1].textContent = names[1];
-      this.chips[1].hidden = is('flicker');
+      this.chips[1].hidden = !is('swipe');
     }
   }
 
@@ -571,7 +581,7 @@
         make('li', {}, several ? make('button', { type: 'button', onclick: () => {
           slices.forEach((slice, plane) => { stack.slice[plane] = slice; });
           stack.go(stack.plane, slices[stack.plane]);
-        } }, text) : text))));
+        } }, signs(text)) : signs(text)))));
     }
     async paint() {
       this.about.layers.forEach((layer, i) => {

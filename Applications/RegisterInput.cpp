@@ -6,9 +6,8 @@
 
 #include "Applications/ExitCode.h"
 #include "Applications/TransformInput.h"
-#include "Transforms/AffineTransform.h"
+#include "Transforms/AffineEquivalent.h"
 #include "Transforms/Domains/FeatureLineFile.h"
-#include "Transforms/RigidTransform.h"
 
 namespace crease {
 namespace {
@@ -20,17 +19,11 @@ AffineMap<Dim> read_start(const std::string& file, RunReport& report) {
     throw InvalidInput(
         message("--init ", file, " is ", dimension, "D, but the images are ", Dim, "D."));
   }
-  const auto transform = read_transforms<Dim>(report, {file});
-  if (const auto* affine = dynamic_cast<const AffineTransform<Dim>*>(transform.get())) {
-    return affine->affine_map();
-  }
-  if (const auto* rigid = dynamic_cast<const RigidTransform<Dim>*>(transform.get())) {
-    return rigid->affine_map();
-  }
-  throw InvalidInput(
-      message("--init ", file,
-              ": only an affine or rigid transform can be the start; warp the moving "
-              "image with this one first."));
+  if (const auto map = affine_equivalent(*read_transforms<Dim>(report, {file}))) return *map;
+  throw InvalidInput(message(
+      "--init ", file,
+      ": only a rigid or affine transform, a similarity, a shift or a chain of these can be the "
+      "start, and this one bends space; warp the moving image with it first."));
 }
 
 RegionOfInterest read_region(const std::string& file, const Raster<2>& fixed, InputFiles& input,

@@ -5,7 +5,11 @@
 
 #include "Core/WholeFile.h"
 #include "Transforms/AffineTransform.h"
+#include "Transforms/Base64.h"
 #include "Transforms/CompositeTransform.h"
+#include "Transforms/DisplacementFieldTransform.h"
+#include "Transforms/ItkFiles/ItkConversion.h"
+#include "Transforms/ItkFiles/ReadItkFile.h"
 #include "Transforms/JsonReader.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/SplineBasisFile.h"
@@ -36,6 +40,19 @@ Json spline_entries(const SplineTransform<InDim, OutDim>& spline) {
           {"control_points", list(spline.control_points())}};
 }
 
+template <int Dim>
+Json field_entries(const DisplacementFieldTransform<Dim>& field) {
+  const Raster<Dim>& raster = field.raster();
+  const EncodedNumbers numbers =
+      encode_numbers({field.displacements().data(), std::size_t(field.displacements().size())});
+  return {{"type", "displacement field"},
+          {"size", raster.size},
+          {"origin", list(raster.origin)},
+          {"spacing", list(raster.spacing)},
+          {"direction_columns", list(raster.direction)},
+          {"displacements", {{"encoding", "base64 " + numbers.type}, {"data", numbers.text}}}};
+}
+
 template <int InDim, int OutDim>
 Json entries(const Transform<InDim, OutDim>& transform) {
   if (const auto* spline = dynamic_cast<const SplineTransform<InDim, OutDim>*>(&transform)) {
@@ -51,6 +68,9 @@ Json entries(const Transform<InDim, OutDim>& transform) {
       return {{"type", "rigid"},
               {"centre", list(rigid->centre())},
               {"parameters", list(rigid->parameters())}};
+    }
+    if (const auto* field = dynamic_cast<const DisplacementFieldTransform<InDim>*>(&transform)) {
+      return field_entries(*field);
     }
     if (const auto* composite = dynamic_cast<const CompositeTransform<InDim>*>(&transform)) {
       Json parts = Json::array();
@@ -83,6 +103,34 @@ std::unique_ptr<Transform<InDim, OutDim>> read_spline(const JsonReader& reader) 
   return transform;
 }
 
+template <int Dim>
+std::unique_ptr<Transform<Dim>> read_field(const JsonReader& reader) {
+  Raster<Dim> raster;
+  const JsonReader size = reader.at("size");
+  if (size.size() != Dim) size.fail_here(message("does not have ", Dim, " numbers"));
+  for (int a = 0; a < Dim; ++a) {
+    raster.size[a] = size.at(std::size_t(a)).integer(1, std::numeric_limits<int>::max());
+  }
+  raster.origin = reader.at("origin").numbers<Dim>();
+  raster.spacing = reader.at("spacing").numbers<Dim>();
+  raster.direction = reader.at("direction_columns").numbers<Dim, Dim>();
+  const JsonReader displacements = reader.at("displacements");
+  const std::string encoding = displacements.at("encoding").text();
+  constexpr std::string_view kBase64 = "base64 ";
+  const auto numbers =
+      encoding.starts_with(kBase64)
+          ? decode_numbers(encoding.substr(kBase64.size()), displacements.at("data").text())
+          : std::nullopt;
+  if (!numbers) displacements.fail_here(message("is not ", encoding, ", or is cut off"));
+  double wanted = Dim;
+  for (int samples : raster.size) wanted *= samples;
+  if (static_cast<double>(numbers->size()) != wanted) {
+    displacements.fail_here(message("has ", numbers->size(), " numbers instead of ", wanted));
+  }
+  return std::make_unique<DisplacementFieldTransform<Dim>>(
+      raster, Eigen::Map<const ControlPoints<Dim>>(numbers->data(), Dim, raster.num_samples()));
+}
+
 template <int InDim, int OutDim>
 std::unique_ptr<Transform<InDim, OutDim>> read(const JsonReader& reader) {
   const std::string type = reader.at("type").text();
@@ -90,6 +138,7 @@ std::unique_ptr<Transform<InDim, OutDim>> read(const JsonReader& reader) {
   if constexpr (InDim == OutDim) {
     if (type == "affine") return read_linear<InDim, AffineTransform<InDim>>(reader);
     if (type == "rigid") return read_linear<InDim, RigidTransform<InDim>>(reader);
+    if (type == "displacement field") return read_field<InDim>(reader);
     if (type == "composite") {
       const JsonReader list = reader.at("parts");
       std::vector<std::unique_ptr<Transform<InDim>>> parts;
@@ -121,7 +170,7 @@ TransformFileInfo read_info(const JsonReader& reader) {
   const JsonReader dimensions = reader.at("dimensions");
   if (dimensions.size() != 2) reader.fail("the entry \"dimensions\" is not a pair");
   return {dimensions.at(std::size_t{0}).integer(2, 3), dimensions.at(std::size_t{1}).integer(2, 3),
-          reader.at("type").text()};
+          reader.at("type").text(), "crease"};
 }
 
 }  // namespace
@@ -136,12 +185,21 @@ void save_transform(const Transform<InDim, OutDim>& transform, const std::filesy
 }
 
 TransformFileInfo peek_transform(const std::filesystem::path& file) {
+  if (is_itk_file(file)) {
+    const ItkTransformList list = read_itk_file(file);
+    const ItkSummary summary = summary_of(list);
+    return {summary.dimension, summary.dimension, summary.type, list.format};
+  }
   const Json json = parse(file);
   return read_info(JsonReader(json, file.string()));
 }
 
 template <int InDim, int OutDim>
 std::unique_ptr<Transform<InDim, OutDim>> load_transform(const std::filesystem::path& file) {
+  if (is_itk_file(file)) {
+    if constexpr (InDim == OutDim) return from_itk<InDim>(read_itk_file(file));
+    throw FileError(message(file.string(), ": is a file of ITK; a surface is needed."));
+  }
   const Json json = parse(file);
   const JsonReader reader(json, file.string());
   const auto info = read_info(reader);

@@ -11,6 +11,8 @@
 #include "Core/WholeFile.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
+#include "Transforms/DisplacementFieldTransform.h"
+#include "Transforms/ItkFiles/ItkTransform.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
@@ -18,11 +20,6 @@
 namespace crease {
 namespace {
 
-/// One of ITK's transforms: its class and the two lists of numbers that define it.
-struct ItkTransform {
-  std::string name;
-  Eigen::VectorXd fixed_parameters, parameters;
-};
 /// What acts first comes first.
 using ItkParts = std::vector<ItkTransform>;
 
@@ -48,15 +45,26 @@ ItkTransform to_itk(const RigidTransform<3>& rigid) {
   return {itk_name<3>("Euler3D"), rigid.centre(), parameters};
 }
 
+/// ITK's [size, origin, spacing, direction by rows].
+template <int Dim>
+Eigen::VectorXd itk_grid(const Raster<Dim>& raster) {
+  Eigen::VectorXd numbers(Dim * (3 + Dim));
+  for (int a = 0; a < Dim; ++a) numbers[a] = raster.size[a];
+  numbers.tail(Dim * (2 + Dim)) << raster.origin, raster.spacing,
+      raster.direction.transpose().reshaped();
+  return numbers;
+}
+
+template <int Dim>
+ItkTransform to_itk(const DisplacementFieldTransform<Dim>& field) {
+  return {itk_name<Dim>("DisplacementField"), itk_grid(field.raster()), field.parameters()};
+}
+
 /// x + v(x). @param v  control points; @param basis  of degree 1 to 3.
 template <int Dim>
 ItkTransform to_itk(const TensorBSplineBasis<Dim>& basis, const ControlPoints<Dim>& v) {
-  ItkTransform spline{itk_name<Dim>("BSpline"), Eigen::VectorXd(Dim * (3 + Dim)), {}};
+  ItkTransform spline{itk_name<Dim>("BSpline"), itk_grid(basis.control_raster()), {}};
   if (basis.degree() != 3) spline.name += message("_", basis.degree());
-  const Raster<Dim> net = basis.control_raster();
-  for (int a = 0; a < Dim; ++a) spline.fixed_parameters[a] = net.size[a];
-  spline.fixed_parameters.tail(Dim * (2 + Dim)) << net.origin, net.spacing,
-      net.direction.transpose().reshaped();
   const Eigen::MatrixXd components = v.transpose();  // one after the other
   spline.parameters = components.reshaped();
   return spline;
@@ -90,6 +98,10 @@ bool append(const Transform<Dim>& transform, ItkParts& parts) {
   }
   if (const auto* rigid = dynamic_cast<const RigidTransform<Dim>*>(&transform)) {
     parts.push_back(to_itk(*rigid));
+    return true;
+  }
+  if (const auto* field = dynamic_cast<const DisplacementFieldTransform<Dim>*>(&transform)) {
+    parts.push_back(to_itk(*field));
     return true;
   }
   const auto* composite = dynamic_cast<const CompositeTransform<Dim>*>(&transform);

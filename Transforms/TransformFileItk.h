@@ -7,7 +7,8 @@
 namespace crease {
 
 /// Whether ITK has the same transform, so that save_itk_transform() can write it: rigid and affine maps,
-/// tensor-product B-splines of degree 1 to 3 whose affine part can be inverted, and chains of these.
+/// displacement fields, tensor-product B-splines of degree 1 to 3 whose affine part can be inverted, and
+/// chains of these.
 template <int Dim>
 bool has_itk_equivalent(const Transform<Dim>& transform);
 
@@ -19,6 +20,7 @@ bool has_itk_equivalent(const Transform<Dim>& transform);
 ///     SplineTransform     BSplineTransform of u when A is the identity; else a CompositeTransform,
 ///                         T(x) = A(x) + u(x) = A(x + v(x)) with v = A_lin^-1 u: first the
 ///                         BSplineTransform of v, then the AffineTransform A
+///     DisplacementFieldTransform  DisplacementFieldTransform
 ///     CompositeTransform  CompositeTransform of all parts; the file lists the last one first, as ITK
 ///
 /// Within the spline's domain ITK's map differs from ours by rounding alone. Outside it does not continue

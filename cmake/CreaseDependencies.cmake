@@ -7,8 +7,9 @@ find_package(CGAL 5.5 REQUIRED)
 set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
 find_package(ITK 5.2 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOGDCM ITKIONIFTI ITKIOMeta
   ITKIONRRD ITKIOPNG ITKIOJPEG ITKIOTIFF ITKIOTransformBase ITKIOTransformInsightLegacy
-  ITKIOTransformHDF5)
+  ITKIOTransformHDF5 ITKIOTransformMatlab)
 unset(CMAKE_MESSAGE_LOG_LEVEL)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc video)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)

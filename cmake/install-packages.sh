@@ -16,6 +16,7 @@ packages=(
   libeigen3-dev            # vectors
   libtbb-dev               # threads
   libinsighttoolkit5-dev   # image files
+  libhdf5-dev              # HDF5 transform files of ITK (ITK brings it too)
   libopencv-dev            # filters
   libcgal-dev              # triangulation
   libboost-dev             # exact fractions in tests (CGAL brings it too)

@@ -10,6 +10,7 @@
 #include "Core/Error.h"
 #include "Testing/Transforms/SampleSplines.h"
 #include "Testing/Transforms/Splines/TestNets.h"
+#include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
@@ -191,6 +192,35 @@ TEST_F(TransformFile, NamesTheEntryAtFault) {
   save_spline();
   change("\"affine_offset\": [\n  0.0,", "\"affine_offset\": [\n  null,");
   expect_error("\"affine_offset[0]\" is not a number");
+}
+
+TEST_F(TransformFile, DisplacementFieldsTakeSinglePrecisionWhereThatIsExact) {
+  Raster<2> raster;
+  raster.size = {3, 2};
+  raster.spacing = {0.1, 7};
+  DisplacementFieldTransform<2> field(raster);
+  field.set_parameters(Eigen::VectorXd::LinSpaced(12, -1.5, 4));
+  save_transform(field, file());
+  EXPECT_EQ(peek_transform(file()).type, "displacement field");
+  EXPECT_EQ(peek_transform(file()).format, "crease");
+  EXPECT_THAT(text(), HasSubstr("\"base64 float32\""));
+  EXPECT_EQ(load_transform<2>(file())->parameters(), field.parameters());
+  field.set_parameters(Eigen::VectorXd::Constant(12, 0.1));
+  save_transform(field, file());
+  EXPECT_THAT(text(), HasSubstr("\"base64 float64\""));
+  EXPECT_EQ(load_transform<2>(file())->parameters(), field.parameters());
+
+  change("mpmZ", "mpm");
+  expect_error("\"displacements\" is not base64 float64, or is cut off");
+  save_transform(field, file());
+  change("\"size\": [\n  3,", "\"size\": [\n  4,");
+  expect_error("\"displacements\" has 12 numbers instead of 16");
+  save_transform(field, file());
+  change("\"base64 float64\"", "\"hex\"");
+  expect_error("\"displacements\" is not hex");
+  save_transform(field, file());
+  change("\"spacing\": [\n  0.1", "\"spacing\": [\n  -0.1");
+  expect_error("the spacing of axis 0 is -0.1");
 }
 
 TEST_F(TransformFile, SaysWhenItCannotWrite) {

@@ -8,6 +8,7 @@
 #include "Testing/Transforms/Splines/TestNets.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
+#include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
@@ -82,6 +83,21 @@ struct TensorShell {
   }
 };
 
+/// Over the lattice of all tests, and turned as that is; its samples are no multiples of the lattice's.
+template <int Dim>
+struct Field {
+  static constexpr int kIn = Dim, kOut = Dim;
+  static std::unique_ptr<Transform<Dim>> make() {
+    const auto lattice = testing::small_lattice<Dim>();
+    Raster<Dim> raster;
+    raster.origin = lattice.origin;
+    raster.direction = lattice.direction;
+    raster.spacing = 0.37 * lattice.spacing;
+    for (int a = 0; a < Dim; ++a) raster.size[a] = 3 * lattice.spans[a] + 1;
+    return std::make_unique<DisplacementFieldTransform<Dim>>(raster);
+  }
+};
+
 template <int Dim>
 struct Composite {
   static constexpr int kIn = Dim, kOut = Dim;
@@ -117,7 +133,7 @@ class TransformSuite : public ::testing::Test {
 using Kinds = ::testing::Types<Affine<2>, Affine<3>, Rigid<2>, Rigid<3>, TensorSpline<2, 2>,
                                TensorSpline<2, 3>, TensorSpline<2, 5>, TensorSpline<3, 3>,
                                TriangularSpline<2>, TriangularSpline<3>, PowellSabinSpline,
-                               TensorShell, Composite<2>, Composite<3>>;
+                               TensorShell, Field<2>, Field<3>, Composite<2>, Composite<3>>;
 TYPED_TEST_SUITE(TransformSuite, Kinds);
 
 TYPED_TEST(TransformSuite, IsTheIdentityAtRest) {

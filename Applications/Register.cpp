@@ -67,6 +67,19 @@ Json levels_json(const std::vector<LevelReport>& levels) {
   return json;
 }
 
+Json adaptation_json(const std::vector<RefinementRound>& rounds) {
+  Json json = Json::array();
+  for (const RefinementRound& round : rounds) {
+    json.push_back({{"control_points", round.control_points},
+                    {"places", round.places},
+                    {"expected_gain", round.expected_gain},
+                    {"cost_before", round.cost_before},
+                    {"cost", round.cost},
+                    {"kept", round.kept}});
+  }
+  return json;
+}
+
 template <int Dim>
 Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& input,
                   const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation,
@@ -92,6 +105,7 @@ Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& inpu
   }
   json["weights"] = outcome.weights;
   json["iterations"] = levels_json(outcome.levels);
+  if (!outcome.refinement.empty()) json["adaptation"] = adaptation_json(outcome.refinement);
   json["stopped_because"] = outcome.stopped_because;
   json["triangles"] = outcome.domain ? Json(outcome.domain->mesh.mesh.simplices.size()) : Json();
   json["control_points"] = outcome.control_points;

@@ -3,9 +3,11 @@
 namespace crease {
 namespace {
 
-RegisterBasis<2> triangular_basis(const RegisterOptions& options, const RegisterInput<2>& input,
-                                  RunReport& report) {
-  CreasedDomainOptions wanted = {.degree = options.spline_degree(),
+RegisterBasis<2> basis_on_triangles(const RegisterOptions& options, const RegisterInput<2>& input,
+                                    RunReport& report, const std::vector<FinerPlace<2>>& finer) {
+  CreasedDomainOptions wanted = {.spline = options.is_triangular() ? TriangleSpline::kTriangular
+                                                                   : TriangleSpline::kPowellSabin,
+                                 .degree = options.spline_degree(),
                                  .smoothness = options.spline_smoothness(),
                                  .creases = !options.no_creases,
                                  .edge_length = options.mesh_size.value_or(0),
@@ -14,12 +16,15 @@ RegisterBasis<2> triangular_basis(const RegisterOptions& options, const Register
   if (options.landmarks_conflict == "refine" && options.landmarks_mode == "exact") {
     wanted.landmarks = input.landmarks;
   }
+  for (const FinerPlace<2>& place : finer) {
+    wanted.fine_discs.push_back({place.centre, place.radius, place.edge_length});
+  }
   const RegionOfInterest region =
       input.region ? *input.region : rectangle_of(input.fixed.image.raster());
   CreasedDomain domain =
       input.labels ? make_creased_domain(region, *input.labels, input.feature_lines, wanted)
                    : make_creased_domain(region, input.feature_lines, wanted);
-  report.add_warnings(domain.warnings);
+  if (finer.empty()) report.add_warnings(domain.warnings);
   RegisterBasis<2> result{.basis = domain.basis, .domain = {}, .bodies = nullptr};
   if (domain.has_bodies()) result.bodies = body_weights<2>();
   result.domain = std::move(domain);
@@ -30,9 +35,10 @@ RegisterBasis<2> triangular_basis(const RegisterOptions& options, const Register
 
 template <int Dim>
 RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
-                                       const RegisterInput<Dim>& input, RunReport& report) {
+                                       const RegisterInput<Dim>& input, RunReport& report,
+                                       const std::vector<FinerPlace<Dim>>& finer) {
   if constexpr (Dim == 2) {
-    if (options.is_triangular()) return triangular_basis(options, input, report);
+    if (options.has_triangles()) return basis_on_triangles(options, input, report, finer);
   }
   const Raster<Dim>& raster = input.fixed.image.raster();
   const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
@@ -44,8 +50,8 @@ RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
 }
 
 template RegisterBasis<2> make_register_basis<2>(const RegisterOptions&, const RegisterInput<2>&,
-                                                 RunReport&);
+                                                 RunReport&, const std::vector<FinerPlace<2>>&);
 template RegisterBasis<3> make_register_basis<3>(const RegisterOptions&, const RegisterInput<3>&,
-                                                 RunReport&);
+                                                 RunReport&, const std::vector<FinerPlace<3>>&);
 
 }  // namespace crease

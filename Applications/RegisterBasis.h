@@ -2,11 +2,13 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "Applications/RegisterInput.h"
 #include "Applications/RegisterOptions.h"
 #include "Applications/RunReport.h"
 #include "Registration/CreasedDomain.h"
+#include "Registration/FinerPlaces.h"
 
 namespace crease {
 
@@ -19,9 +21,11 @@ struct RegisterBasis {
 };
 
 /// Makes the basis that `--transform` and the options of the domain describe; warnings go to the report.
+/// @param finer  places that ask for finer patches, with transforms that can_adapt().
 /// @throws InvalidInput for lines, labels and landmarks that allow none.
 template <int Dim>
 RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
-                                       const RegisterInput<Dim>& input, RunReport& report);
+                                       const RegisterInput<Dim>& input, RunReport& report,
+                                       const std::vector<FinerPlace<Dim>>& finer = {});
 
 }  // namespace crease

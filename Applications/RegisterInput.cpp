@@ -68,7 +68,7 @@ LabelImage<Dim> read_bodies(const RegisterOptions& options, const Raster<Dim>& f
 
 int dimension_of(const RegisterOptions& options) {
   const int dimension = InputFiles::common_dimension({options.fixed, options.moving});
-  if (dimension == 3 && options.is_triangular()) {
+  if (dimension == 3 && options.has_triangles()) {
     throw UsageError(message("--transform triangular-bspline works on 2D images, and ",
                              options.fixed, " is 3D; take bspline, affine or rigid for volumes."));
   }

@@ -17,18 +17,24 @@ void refuse_if(bool given, const char* option, const RegisterOptions& options, c
 }
 
 void check_transform(const RegisterOptions& o) {
-  if (!o.is_triangular()) {
-    const char* needs = "--transform triangular-bspline";
+  if (!o.has_triangles()) {
+    const char* needs = "triangles: --transform triangular-bspline or powell-sabin";
     refuse_if(o.triangles.has_value(), "triangles", o, needs);
-    refuse_if(o.smoothness.has_value(), "smoothness", o, needs);
     refuse_if(o.roi.has_value(), "roi", o, needs);
-    refuse_if(o.no_creases, "no-creases", o, needs);
     refuse_if(o.feature_lines.has_value(), "feature-lines", o, needs);
     refuse_if(o.landmarks_conflict == "refine", "landmarks-conflict refine", o, needs);
   }
+  if (!o.is_triangular()) {
+    const char* needs = "--transform triangular-bspline";
+    refuse_if(o.smoothness.has_value(), "smoothness", o, needs);
+    refuse_if(o.no_creases, "no-creases", o, needs);
+  }
+  refuse_if(o.degree.has_value() && !o.has_degree(), "degree", o,
+            "splines of any degree: --transform triangular-bspline or bspline");
+  refuse_if(o.adapt > 0 && !o.can_adapt(), "adapt", o,
+            "patches that can be divided: --transform triangular-bspline or powell-sabin");
   if (!o.is_spline()) {
-    const char* needs = "a spline: --transform triangular-bspline or bspline";
-    refuse_if(o.degree.has_value(), "degree", o, needs);
+    const char* needs = "a spline: --transform triangular-bspline, bspline or powell-sabin";
     refuse_if(o.mesh_size.has_value(), "mesh-size", o, needs);
     refuse_if(o.rigid_labels.has_value(), "rigid-labels", o, needs);
     refuse_if(o.beta.has_value(), "beta", o, needs);
@@ -42,6 +48,15 @@ void check_transform(const RegisterOptions& o) {
   if (o.smoothness && *o.smoothness > o.spline_degree() - 1) {
     throw UsageError(message("--smoothness ", *o.smoothness, " needs --degree ", *o.smoothness + 1,
                              " or more; the degree is ", o.spline_degree(), "."));
+  }
+}
+
+void check_adaptation(const RegisterOptions& o) {
+  if (o.adapt == 0) return;
+  if (o.image_weight() == 0) throw UsageError("--adapt needs images to ask for finer patches.");
+  if (o.gamma && *o.gamma == 0) {
+    throw UsageError(
+        "--adapt needs bending, which says what finer patches cost; leave --gamma 0 out.");
   }
 }
 
@@ -144,8 +159,8 @@ std::vector<Option> domain_options(RegisterOptions& o) {
   return {
       {.name = "transform",
        .target = &o.transform,
-       .help = "What moves the image; triangular in 2D only, the others in 2D and 3D",
-       .choices = {"triangular-bspline", "bspline", "affine", "rigid"}},
+       .help = "What moves the image; on triangles in 2D only, the others in 2D and 3D",
+       .choices = {"triangular-bspline", "bspline", "powell-sabin", "affine", "rigid"}},
       {.name = "degree",
        .target = &o.degree,
        .placeholder = "N",
@@ -265,6 +280,12 @@ std::vector<Option> solver_options(RegisterOptions& o) {
        .help = "Resolutions of the image pyramid",
        .minimum = 1,
        .maximum = 12},
+      {.name = "adapt",
+       .target = &o.adapt,
+       .placeholder = "N",
+       .help = "Divide patches where the images ask for it, up to N times (0)",
+       .minimum = 0,
+       .maximum = 8},
       {.name = "optimizer",
        .target = &o.optimizer,
        .help = "How the minimum is sought",
@@ -298,6 +319,7 @@ std::vector<Option> options_of(RegisterOptions& options) {
 
 void check(const RegisterOptions& options) {
   check_transform(options);
+  check_adaptation(options);
   check_landmarks(options);
   check_weights(options);
 }

@@ -32,16 +32,22 @@ struct RegisterOptions {
   std::string optimizer = "gauss-newton";
   std::string null_space = "elimination";
   int levels = 3;
+  int adapt = 0;
   std::optional<std::string> init;
   std::optional<std::string> init_transform;
   std::vector<double> spacing;
   bool require_invertible = false;
 
   bool is_triangular() const { return transform == "triangular-bspline"; }
-  bool is_spline() const { return is_triangular() || transform == "bspline"; }
+  bool has_triangles() const { return is_triangular() || transform == "powell-sabin"; }
+  bool is_spline() const { return has_triangles() || transform == "bspline"; }
+  /// Whether its patches can be divided where the images ask for it.
+  bool can_adapt() const { return has_triangles(); }
+  /// Whether its degree can be chosen.
+  bool has_degree() const { return is_triangular() || transform == "bspline"; }
   bool has_metric() const { return metric != "none"; }
   bool expects_equal_intensities() const { return metric == "ssd" || !has_metric(); }
-  int spline_degree() const { return degree.value_or(3); }
+  int spline_degree() const { return transform == "powell-sabin" ? 2 : degree.value_or(3); }
   int spline_smoothness() const { return smoothness.value_or(spline_degree() - 1); }
   /// Weights as they hold: alpha of the metric, beta of rigidity, 0 where a term is absent.
   double image_weight() const { return has_metric() ? alpha : 0; }

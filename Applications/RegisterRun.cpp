@@ -1,5 +1,6 @@
 #include "Applications/RegisterRun.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "Applications/RegisterBasis.h"
@@ -154,6 +155,45 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   return registration;
 }
 
+/// Divides patches where the images ask for it; basis becomes the last one that was kept.
+AdaptiveResult<2> run_adaptively(const RegisterOptions& options, const RegisterInput<2>& input,
+                                 const AffineMap<2>& start, RegisterBasis<2>& basis,
+                                 std::map<std::string, double>& weights, RunReport& report,
+                                 ProgressReporter& progress) {
+  std::vector<RegisterBasis<2>> made = {basis};
+  const auto of = [&](const SplineBasis<2>* wanted) -> RegisterBasis<2>& {
+    return *std::ranges::find_if(made, [&](const auto& b) { return b.basis.get() == wanted; });
+  };
+  AdaptiveComposition<2> parts;
+  parts.make_basis = [&](const std::vector<FinerPlace<2>>& finer) {
+    if (!finer.empty()) made.push_back(make_register_basis(options, input, report, finer));
+    return made.back().basis;
+  };
+  parts.compose = [&](const std::shared_ptr<const SplineBasis<2>>& wanted) {
+    return compose(options, input, start, of(wanted.get()), weights);
+  };
+  parts.most_rounds = options.adapt;
+  AdaptiveResult<2> result = register_adaptively(parts, progress.callback());
+  basis = of(&result.registration.transform->basis());
+  return result;
+}
+
+template <int Dim>
+RegistrationResult<Dim> run_spline(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                   const AffineMap<Dim>& start, RegisterBasis<Dim>& basis,
+                                   RegisterOutcome<Dim>& outcome, RunReport& report,
+                                   ProgressReporter& progress) {
+  if constexpr (Dim == 2) {
+    if (options.adapt > 0) {
+      AdaptiveResult<2> adapted =
+          run_adaptively(options, input, start, basis, outcome.weights, report, progress);
+      outcome.refinement = std::move(adapted.rounds);
+      return std::move(adapted.registration);
+    }
+  }
+  return compose(options, input, start, basis, outcome.weights).run(progress.callback());
+}
+
 template <int Dim>
 RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
                                     const Alignment<Dim>& alignment, RunReport& report,
@@ -163,11 +203,9 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
   report.end_stage("domain");
   RegisterOutcome<Dim> outcome;
   outcome.alignment = alignment;
-  outcome.control_points = basis.basis->num_control_points();
-  outcome.domain_measure = basis.basis->measure();
   try {
     RegistrationResult<Dim> result =
-        compose(options, input, alignment.map, basis, outcome.weights).run(progress.callback());
+        run_spline(options, input, alignment.map, basis, outcome, report, progress);
     for (const auto& [stage, seconds] : result.timings_s) report.add_part(stage, seconds);
     report.add_warnings(result.warnings);
     outcome.transform = result.transform;
@@ -192,6 +230,8 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
     outcome.converged = outcome.improved = false;
   }
   report.end_stage("registration");
+  outcome.control_points = basis.basis->num_control_points();
+  outcome.domain_measure = basis.basis->measure();
   outcome.domain = std::move(basis.domain);
   return outcome;
 }

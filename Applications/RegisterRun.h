@@ -9,6 +9,7 @@
 #include "Applications/ProgressReporter.h"
 #include "Applications/RegisterInput.h"
 #include "Applications/RegisterOptions.h"
+#include "Registration/AdaptiveRegistration.h"
 #include "Registration/CreasedDomain.h"
 #include "Registration/Registration.h"
 
@@ -25,6 +26,7 @@ struct RegisterOutcome {
   std::map<std::string, double> energies;  ///< unweighted
   std::map<std::string, double> weights;   ///< of these
   std::vector<LevelReport> levels;
+  std::vector<RefinementRound> refinement;  ///< of patches
   std::optional<UnfoldingReport> unfolding;
   std::string stopped_because;
   int control_points = 0;

@@ -50,13 +50,7 @@ void Minimization::evaluate(EvaluatedPoint& at) {
   at.value = function_.evaluate(at.x, &full_gradient_, with_hessian_ ? &at.hessian : nullptr);
   if (with_hessian_) at.hessian.makeCompressed();
   ++work_.evaluations;
-  const auto where = [&] {
-    return history_.empty() ? std::string("at the start")
-                            : message("in iteration ", history_.back().iteration + 1);
-  };
-  if (std::isnan(at.value)) {
-    throw SolverError(message("minimisation: the value is not a number ", where(), "."));
-  }
+  check_value(at.value);
   if (std::isinf(at.value)) return;  // a trial that will be rejected
   if (full_gradient_.size() != at.x.size()) {
     throw InvalidInput(message("minimisation: the function returned a gradient of ",
@@ -68,6 +62,24 @@ void Minimization::evaluate(EvaluatedPoint& at) {
                               " ", where(), "."));
   }
   at.gradient = null_space_->apply_transpose(full_gradient_);
+}
+
+// For messages.
+std::string Minimization::where() const {
+  return history_.empty() ? std::string("at the start")
+                          : message("in iteration ", history_.back().iteration + 1);
+}
+
+void Minimization::check_value(double value) const {
+  if (!std::isnan(value)) return;
+  throw SolverError(message("minimisation: the value is not a number ", where(), "."));
+}
+
+double Minimization::value_at(const Eigen::VectorXd& y) {
+  const double value = function_.evaluate(null_space_->expand(y), nullptr, nullptr);
+  ++work_.evaluations;
+  check_value(value);
+  return value;
 }
 
 const EvaluatedPoint& Minimization::evaluate_trial(Eigen::VectorXd y) {

@@ -26,8 +26,11 @@ class Minimization {
 
   const NullSpace& null_space() const { return *null_space_; }
   const EvaluatedPoint& current() const { return current_; }
+  const EvaluatedPoint& trial() const { return trial_; }
   /// Evaluates at y; no NaN passes. The trial is overwritten by the next one.
   const EvaluatedPoint& evaluate_trial(Eigen::VectorXd y);
+  /// The value at y alone, which leaves the trial as it is; no NaN passes.
+  double value_at(const Eigen::VectorXd& y);
   /// step_length() of current -> trial, in x.
   double trial_step() const;
   /// Makes the trial the current point, records it and applies the stopping rules.
@@ -47,6 +50,8 @@ class Minimization {
 
  private:
   void evaluate(EvaluatedPoint& at);
+  void check_value(double value) const;
+  std::string where() const;
   void record(IterationRecord record);
   bool count_decrease(double decrease);
   double seconds() const;

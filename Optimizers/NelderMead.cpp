@@ -3,12 +3,14 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multimin.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <memory>
 
 #include "Core/Error.h"
+#include "Optimizers/Minimization.h"
 
 namespace crease {
 namespace {
@@ -63,6 +65,22 @@ void check(const Eigen::VectorXd& start, const Eigen::VectorXd& steps) {
   }
 }
 
+// What moves every free unknown by one unit of step_length().
+Eigen::VectorXd unit_steps(const ObjectiveFunction& function, const NullSpace& space) {
+  Eigen::VectorXd steps(space.reduced_size());
+  for (Eigen::Index i = 0; i < steps.size(); ++i) {
+    const double length = function.step_length(space.apply(Eigen::VectorXd::Unit(steps.size(), i)));
+    steps[i] = length > 0 ? 1 / length : 1.0;
+  }
+  return steps;
+}
+
+OptimizerOptions simplex_rules(OptimizerOptions stopping) {
+  check_options(stopping);
+  stopping.relative_decrease = stopping.step_length = 0.0;
+  return stopping;
+}
+
 }  // namespace
 
 NelderMeadResult nelder_mead(const std::function<double(const Eigen::VectorXd&)>& function,
@@ -92,6 +110,11 @@ NelderMeadResult nelder_mead(const std::function<double(const Eigen::VectorXd&)>
   while (status == GSL_SUCCESS && !problem.error && !result.converged &&
          problem.evaluations < options.max_evaluations) {
     status = gsl_multimin_fminimizer_iterate(minimizer.get());
+    if (options.after_iteration &&
+        !options.after_iteration(to_eigen(gsl_multimin_fminimizer_x(minimizer.get())),
+                                 gsl_multimin_fminimizer_minimum(minimizer.get()))) {
+      break;
+    }
     result.converged = gsl_multimin_fminimizer_size(minimizer.get()) < options.size_tolerance;
   }
   if (problem.error) std::rethrow_exception(problem.error);
@@ -99,6 +122,50 @@ NelderMeadResult nelder_mead(const std::function<double(const Eigen::VectorXd&)>
   result.value = gsl_multimin_fminimizer_minimum(minimizer.get());
   result.num_evaluations = problem.evaluations;
   return result;
+}
+
+NelderMead::NelderMead(const OptimizerOptions& stopping, const SimplexOptions& simplex)
+    : stopping_(simplex_rules(stopping)), simplex_(simplex) {
+  simplex_.last_size = std::max(simplex.last_size, stopping.step_length);
+  if (simplex.first_edge > 0.0 && simplex.last_size > 0.0 && simplex.max_evaluations >= 0) return;
+  throw InvalidInput(message("Nelder-Mead: need first_edge > 0 (is ", simplex.first_edge,
+                             "), last_size > 0 (", simplex.last_size, "), max_evaluations >= 0 (",
+                             simplex.max_evaluations, ")."));
+}
+
+OptimizerResult NelderMead::minimize(ObjectiveFunction& function, const Eigen::VectorXd& start,
+                                     const NullSpace* null_space,
+                                     const ProgressCallback& progress) const {
+  Minimization run(function, start, null_space, stopping_, progress, /*with_hessian=*/false);
+  if (run.stopped()) return run.result();
+  const NullSpace& space = run.null_space();
+  if (space.reduced_size() > kMostUnknowns) {
+    throw InvalidInput(message("Nelder-Mead: ", space.reduced_size(), " unknowns; it is for up to ",
+                               kMostUnknowns, ", take an optimizer with gradients."));
+  }
+  const Eigen::VectorXd first = run.current().y;
+  const Eigen::VectorXd units = unit_steps(function, space);
+  const auto place = [&](const Eigen::VectorXd& u) -> Eigen::VectorXd {
+    return first + units.cwiseProduct(u);
+  };
+  NelderMeadOptions options;
+  options.size_tolerance = simplex_.last_size;
+  options.max_evaluations = simplex_.max_evaluations;
+  options.after_iteration = [&](const Eigen::VectorXd& u, double value) {
+    if (value < run.current().value &&
+        run.evaluate_trial(place(u)).value < run.current().value) {
+      run.accept_trial();
+    }
+    return !run.out_of_time();
+  };
+  const auto found = nelder_mead(
+      [&](const Eigen::VectorXd& u) {
+        return run.out_of_time() ? run.current().value : run.value_at(place(u));
+      },
+      Eigen::VectorXd::Zero(first.size()),
+      Eigen::VectorXd::Constant(first.size(), simplex_.first_edge), options);
+  run.stop(found.converged ? StopReason::kSmallStep : StopReason::kIterationLimit);
+  return run.result();
 }
 
 }  // namespace crease

@@ -119,7 +119,9 @@ bool SparseCholesky::factor(const Eigen::SparseMatrix<double>& A) {
 bool SparseCholesky::has_factor() const { return state_->factored; }
 Eigen::Index SparseCholesky::size() const { return state_->size; }
 
-Eigen::MatrixXd SparseCholesky::solve_columns(const Eigen::Ref<const Eigen::MatrixXd>& B) const {
+// CHOLMOD's systems, one after the other.
+Eigen::MatrixXd SparseCholesky::solve_systems(std::initializer_list<int> systems,
+                                              const Eigen::Ref<const Eigen::MatrixXd>& B) const {
   const State& state = *state_;
   if (!state.factored || B.rows() != state.size) {
     throw InvalidInput(message("sparse Cholesky: ", state.factored ? "" : "no factor; ",
@@ -127,19 +129,36 @@ Eigen::MatrixXd SparseCholesky::solve_columns(const Eigen::Ref<const Eigen::Matr
                                state.size, "."));
   }
   const SingleThreadedLibraries single;
-  cholmod_dense rhs{};
-  rhs.nrow = static_cast<std::size_t>(B.rows());
-  rhs.ncol = static_cast<std::size_t>(B.cols());
-  rhs.d = static_cast<std::size_t>(B.outerStride());
-  rhs.nzmax = rhs.d * rhs.ncol;
-  rhs.x = const_cast<double*>(B.data());
-  rhs.xtype = CHOLMOD_REAL;
-  rhs.dtype = CHOLMOD_DOUBLE;
-  cholmod_solve2(CHOLMOD_A, state.L, &rhs, nullptr, &state.X, nullptr, &state.Y, &state.E,
-                 &state.common);
-  check_memory(state.common);
-  return Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(state.X->x), B.rows(),
-                                           B.cols());
+  Eigen::MatrixXd solution = B;
+  for (const int system : systems) {
+    cholmod_dense rhs{};
+    rhs.nrow = static_cast<std::size_t>(solution.rows());
+    rhs.ncol = static_cast<std::size_t>(solution.cols());
+    rhs.d = rhs.nrow;
+    rhs.nzmax = rhs.d * rhs.ncol;
+    rhs.x = solution.data();
+    rhs.xtype = CHOLMOD_REAL;
+    rhs.dtype = CHOLMOD_DOUBLE;
+    cholmod_solve2(system, state.L, &rhs, nullptr, &state.X, nullptr, &state.Y, &state.E,
+                   &state.common);
+    check_memory(state.common);
+    solution = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(state.X->x),
+                                                 solution.rows(), solution.cols());
+  }
+  return solution;
+}
+
+Eigen::MatrixXd SparseCholesky::solve_columns(const Eigen::Ref<const Eigen::MatrixXd>& B) const {
+  return solve_systems({CHOLMOD_A}, B);
+}
+
+Eigen::MatrixXd SparseCholesky::solve_root(const Eigen::Ref<const Eigen::MatrixXd>& B) const {
+  return solve_systems({CHOLMOD_Lt, CHOLMOD_Pt}, B);
+}
+
+Eigen::MatrixXd SparseCholesky::solve_root_transpose(
+    const Eigen::Ref<const Eigen::MatrixXd>& B) const {
+  return solve_systems({CHOLMOD_P, CHOLMOD_L}, B);
 }
 
 Eigen::VectorXd SparseCholesky::solve(const Eigen::Ref<const Eigen::VectorXd>& b) const {

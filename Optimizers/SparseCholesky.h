@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <initializer_list>
 #include <memory>
 
 namespace crease {
@@ -28,6 +29,11 @@ class SparseCholesky {
   Eigen::VectorXd solve(const Eigen::Ref<const Eigen::VectorXd>& b) const;
   /// A^-1 B for several right-hand sides at once.
   Eigen::MatrixXd solve_columns(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
+  /// With the root R = L^T P of A = R^T R: R^-1 B, which turns vectors whose length is Euclid's into
+  /// vectors whose length A measures.
+  Eigen::MatrixXd solve_root(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
+  /// R^-T B: carries gradients the other way.
+  Eigen::MatrixXd solve_root_transpose(const Eigen::Ref<const Eigen::MatrixXd>& B) const;
 
   bool is_supernodal() const;
   /// Non-zeros of L (with the zeros that supernodes store).
@@ -35,6 +41,8 @@ class SparseCholesky {
 
  private:
   struct State;
+  Eigen::MatrixXd solve_systems(std::initializer_list<int> systems,
+                                const Eigen::Ref<const Eigen::MatrixXd>& B) const;
   std::unique_ptr<State> state_;
 };
 

@@ -20,6 +20,7 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(PkgConfig REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
 pkg_check_modules(GSL REQUIRED IMPORTED_TARGET gsl)
 
 # CHOLMOD and SPQR have no CMake package of their own.

@@ -5,7 +5,7 @@
 #   cmake/install-packages.sh           installs what is missing (as root, or through sudo)
 #   cmake/install-packages.sh --list    prints the names of all packages needed
 #
-# Packages of later chapters (Ceres, FFTW) join the list with the code that uses them.
+# Packages of later chapters (FFTW) join the list with the code that uses them.
 set -euo pipefail
 
 packages=(
@@ -22,7 +22,8 @@ packages=(
   libboost-dev             # exact fractions in tests (CGAL brings it too)
   libsuitesparse-dev       # sparse factors
   libopenblas-dev          # their BLAS
-  libgsl-dev               # minimisers
+  libgsl-dev               # minimisers by values
+  libceres-dev             # minimisers by gradients
   libcli11-dev             # command line
   libtomlplusplus-dev      # configuration files
   nlohmann-json3-dev       # results

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "Core/Error.h"
+#include "Optimizers/GaussNewton.h"
+#include "Testing/Optimizers/Problems.h"
 
 namespace crease {
 namespace {
@@ -70,4 +72,59 @@ TEST(NelderMead, RefusesBadInput) {
   const auto bad = [](const Eigen::VectorXd&) { return std::nan(""); };
   EXPECT_THROW(nelder_mead(bad, kStart, kSteps), SolverError);
 }
+TEST(NelderMead, CallsBackAfterEveryIterationAndMayBeEnded) {
+  int calls = 0;
+  double last = rosenbrock(kStart);
+  NelderMeadOptions options;
+  options.after_iteration = [&](const Eigen::VectorXd& x, double value) {
+    EXPECT_DOUBLE_EQ(value, rosenbrock(x));
+    EXPECT_LE(value, last);
+    last = value;
+    return ++calls < 7;
+  };
+  const auto result = nelder_mead(rosenbrock, kStart, kSteps, options);
+  EXPECT_EQ(calls, 7);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.value, last);
+}
+
+TEST(NelderMeadOptimizer, KeepsConstraintsHistoryAndCancels) {
+  testing::ConvexFunction function(testing::grid_hessian(4, 1, 2, 2),
+                                   10 * Eigen::VectorXd::Ones(16), 1.0);
+  const auto constraints = testing::landmark_constraints(4, 2, 1, 3);
+  const auto space = make_null_space(NullSpaceKind::kElimination, constraints, 16);
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(16);
+  const auto reference =
+      GaussNewton({.relative_decrease = 0.0}).minimize(function, start, space.get());
+  function.evaluations = 0;
+  const NelderMead optimizer({.relative_gradient = 0.0, .max_iterations = 5000},
+                             {.last_size = 1e-6, .max_evaluations = 20000});
+  const auto result = optimizer.minimize(function, start, space.get());
+  EXPECT_EQ(result.reason, StopReason::kSmallStep);
+  EXPECT_NEAR(result.value, reference.value, 1e-6 * std::abs(reference.value));
+  EXPECT_LE(testing::violation(constraints, result.x), 1e-12);
+  EXPECT_EQ(result.num_evaluations, function.evaluations);
+  for (std::size_t i = 1; i < result.history.size(); ++i) {
+    EXPECT_LT(result.history[i].value, result.history[i - 1].value);
+  }
+  const auto cancelled = optimizer.minimize(
+      function, start, space.get(), [](const IterationRecord& r) { return r.iteration < 3; });
+  EXPECT_EQ(cancelled.reason, StopReason::kCancelled);
+  EXPECT_EQ(cancelled.iterations, 3);
+  const auto limited =
+      NelderMead({}, {.max_evaluations = 30}).minimize(function, start, space.get());
+  EXPECT_EQ(limited.reason, StopReason::kIterationLimit);
+  EXPECT_LE(testing::violation(constraints, limited.x), 1e-12);
+  const auto late = NelderMead({.max_seconds = 0.0}).minimize(function, start, space.get());
+  EXPECT_EQ(late.reason, StopReason::kTimeLimit);
+}
+
+TEST(NelderMeadOptimizer, IsForFewUnknowns) {
+  testing::ConvexFunction function(testing::grid_hessian(6, 1, 2, 2), Eigen::VectorXd::Ones(36),
+                                   1.0);
+  EXPECT_THAT([&] { NelderMead().minimize(function, Eigen::VectorXd::Zero(36)); },
+              ::testing::ThrowsMessage<InvalidInput>(::testing::HasSubstr("36 unknowns")));
+  EXPECT_THROW(NelderMead({}, {.first_edge = 0.0}), InvalidInput);
+}
+
 }  // namespace crease

@@ -10,6 +10,8 @@
 #include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Optimizers/GaussNewton.h"
+#include "Optimizers/Lbfgs.h"
+#include "Optimizers/NonlinearConjugateGradient.h"
 #include "Optimizers/SteepestDescent.h"
 #include "Testing/Optimizers/Problems.h"
 
@@ -31,6 +33,11 @@ const Method kMethods[] = {
     {"GaussNewtonDirect", gauss_newton<LinearSolver::kDirect>},
     {"GaussNewtonPreconditionedCg", gauss_newton<LinearSolver::kPreconditionedCg>},
     {"GaussNewtonScalarCg", gauss_newton<LinearSolver::kScalarPreconditionedCg>},
+    {"Lbfgs", [](const OptimizerOptions& stopping) { return std::make_unique<Lbfgs>(stopping); }},
+    {"ConjugateGradient",
+     [](const OptimizerOptions& stopping) {
+       return std::make_unique<NonlinearConjugateGradient>(stopping);
+     }},
     {"SteepestDescent",
      [](const OptimizerOptions& stopping) { return std::make_unique<SteepestDescent>(stopping); }},
 };
@@ -224,6 +231,36 @@ TEST_P(EveryOptimizer, AllUnknownsFixedByConstraints) {
       GetParam().make({})->minimize(function, Eigen::VectorXd::Ones(16), space.get());
   EXPECT_LE(testing::violation(constraints, result.x), 1e-9);
   EXPECT_EQ(result.iterations, 0);
+}
+
+// With the Hessian at the start as preconditioner, full first steps lead beyond the barrier.
+TEST_P(EveryOptimizer, RejectsTrialPointsOfInfiniteValue) {
+  testing::Barrier barrier;
+  Eigen::SparseMatrix<double> P(1, 1);
+  P.insert(0, 0) = 0.1;
+  testing::PreconditionedFunction function(barrier, P);
+  const auto result =
+      GetParam()
+          .make({.relative_decrease = 0.0, .relative_gradient = 1e-7, .max_iterations = 500})
+          ->minimize(function, Eigen::VectorXd::Constant(1, 1.0));
+  EXPECT_NEAR(result.x[0], 0.1, 1e-6);
+  EXPECT_GT(barrier.infinite, 0);
+}
+
+TEST_P(EveryOptimizer, PassesOnWhatTheFunctionThrows) {
+  class Refusing final : public ObjectiveFunction {
+   public:
+    Eigen::Index size() const override { return 2; }
+    double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
+                    Eigen::SparseMatrix<double>* hessian) override {
+      if (++calls > 3) throw InvalidInput("no more");
+      return inner.evaluate(x, gradient, hessian);
+    }
+    testing::Rosenbrock inner;
+    int calls = 0;
+  } function;
+  EXPECT_THAT([&] { GetParam().make({})->minimize(function, Eigen::Vector2d(-1.2, 1.0)); },
+              ::testing::ThrowsMessage<InvalidInput>("no more"));
 }
 
 TEST(GaussNewton, NamesTheEntryOfTheHessianThatIsNotANumber) {
@@ -433,32 +470,14 @@ TEST(GaussNewton, NeedsAHessian) {
   EXPECT_LE(SteepestDescent().minimize(function, Eigen::Vector2d(1, 2)).x.norm(), 1e-5);
 }
 
-TEST(GaussNewton, RejectsTrialPointsOfInfiniteValue) {
-  // 1/2 (x - log x)^2 is infinite beyond x = 0, where the first step would go.
-  class Barrier final : public ObjectiveFunction {
-   public:
-    Eigen::Index size() const override { return 1; }
-    double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
-                    Eigen::SparseMatrix<double>* hessian) override {
-      if (x[0] <= 0) return std::numeric_limits<double>::infinity();
-      if (gradient != nullptr) (*gradient)[0] = 1 - 0.1 / x[0];
-      if (hessian != nullptr) {
-        hessian->resize(1, 1);
-        hessian->coeffRef(0, 0) = 0.1 / (x[0] * x[0]);
-      }
-      return x[0] - 0.1 * std::log(x[0]);
-    }
-  } function;
-  const auto result = GaussNewton({.relative_decrease = 0.0, .relative_gradient = 1e-9})
-                          .minimize(function, Eigen::VectorXd::Constant(1, 1.0));
-  EXPECT_NEAR(result.x[0], 0.1, 1e-6);
-}
-
 TEST(GaussNewton, RefusesOptionsOutOfRange) {
   EXPECT_THROW(GaussNewton({.small_decreases = 0}), InvalidInput);
   EXPECT_THROW(GaussNewton({.relative_decrease = std::nan("")}), InvalidInput);
   EXPECT_THROW(GaussNewton({}, {.shortening = 1.5}), InvalidInput);
   EXPECT_THROW(GaussNewton({}, {.linear_solver = {.cg_tolerance = 0.0}}), InvalidInput);
   EXPECT_THROW(SteepestDescent({}, {.first_step = 0.0}), InvalidInput);
+  EXPECT_THROW(Lbfgs({}, {.memory = 0}), InvalidInput);
+  EXPECT_THROW(Lbfgs({.max_iterations = -1}), InvalidInput);
+  EXPECT_THROW(NonlinearConjugateGradient({}, {.first_step = 0.0}), InvalidInput);
 }
 }  // namespace crease

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -127,6 +128,47 @@ class ConvexFunction final : public ObjectiveFunction {
   Eigen::SparseMatrix<double> A_;
   Eigen::VectorXd b_;
   double w_;
+};
+
+/// A function that offers a preconditioner.
+class PreconditionedFunction final : public ObjectiveFunction {
+ public:
+  PreconditionedFunction(ObjectiveFunction& inner, Eigen::SparseMatrix<double> matrix)
+      : inner_(inner), matrix_(std::move(matrix)) {}
+  Eigen::Index size() const override { return inner_.size(); }
+  double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
+                  Eigen::SparseMatrix<double>* hessian) override {
+    return inner_.evaluate(x, gradient, hessian);
+  }
+  bool preconditioner(const Eigen::Ref<const Eigen::VectorXd>&,
+                      Eigen::SparseMatrix<double>& matrix) override {
+    matrix = matrix_;
+    return true;
+  }
+
+ private:
+  ObjectiveFunction& inner_;
+  Eigen::SparseMatrix<double> matrix_;
+};
+
+/// x - 0.1 log x, infinite beyond x = 0: its minimum, at 0.1, lies behind where long steps end.
+class Barrier final : public ObjectiveFunction {
+ public:
+  Eigen::Index size() const override { return 1; }
+  double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
+                  Eigen::SparseMatrix<double>* hessian) override {
+    if (x[0] <= 0) {
+      ++infinite;
+      return std::numeric_limits<double>::infinity();
+    }
+    if (gradient != nullptr) *gradient = Eigen::VectorXd::Constant(1, 1 - 0.1 / x[0]);
+    if (hessian != nullptr) {
+      hessian->resize(1, 1);
+      hessian->coeffRef(0, 0) = 0.1 / (x[0] * x[0]);
+    }
+    return x[0] - 0.1 * std::log(x[0]);
+  }
+  int infinite = 0;  ///< trial points beyond
 };
 
 /// 1/2 |r(x)|^2 with the Gauss-Newton Hessian J^T J, dense.

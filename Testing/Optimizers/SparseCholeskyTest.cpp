@@ -47,6 +47,20 @@ TEST(SparseCholesky, FactorsNewNumbersAndNewPatterns) {
   }
 }
 
+TEST(SparseCholesky, ItsRootMakesTheMatrixTheIdentity) {
+  for (int side : {1, 5, 25}) {  // simplicial and supernodal
+    const auto A = testing::grid_hessian(side, 2, 3, 1);
+    SparseCholesky cholesky;
+    ASSERT_TRUE(cholesky.factor(A));
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(A.rows(), A.rows());
+    const Eigen::MatrixXd R = cholesky.solve_root(identity);  // R^-1
+    const Eigen::MatrixXd product = R.transpose() * testing::dense_symmetric(A) * R;
+    EXPECT_LE((product - identity).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LE((cholesky.solve_root_transpose(identity) - R.transpose()).cwiseAbs().maxCoeff(),
+              1e-13);
+  }
+}
+
 TEST(SparseCholesky, IgnoresTheUpperTriangle) {
   auto A = testing::grid_hessian(5, 1, 1, 1);
   const Eigen::VectorXd b = Eigen::VectorXd::Ones(25);

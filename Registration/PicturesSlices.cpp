@@ -38,11 +38,11 @@ std::vector<Slice<Dim>> slices(const Raster<Dim>& raster) {
   return result;
 }
 
-template <int Dim>
-Image<float, 2> samples(const Image<float, Dim>& image, const Slice<Dim>& slice) {
+template <typename Pixel, int Dim>
+Image<Pixel, 2> samples(const Image<Pixel, Dim>& image, const Slice<Dim>& slice) {
   Raster<2> raster;
   raster.size = {image.size()[slice.first], image.size()[slice.second]};
-  Image<float, 2> plane(raster);
+  Image<Pixel, 2> plane(raster);
   auto index = slice.middle;
   for (int j = 0; j < raster.size[1]; ++j) {
     for (int i = 0; i < raster.size[0]; ++i) {
@@ -61,8 +61,10 @@ Image<float, 2> pixels(const Image<float, Dim>& image, const Slice<Dim>& slice) 
 
 template std::vector<Slice<2>> slices<2>(const Raster<2>&);
 template std::vector<Slice<3>> slices<3>(const Raster<3>&);
-template Image<float, 2> samples<2>(const Image<float, 2>&, const Slice<2>&);
-template Image<float, 2> samples<3>(const Image<float, 3>&, const Slice<3>&);
+template Image<float, 2> samples(const Image<float, 2>&, const Slice<2>&);
+template Image<float, 2> samples(const Image<float, 3>&, const Slice<3>&);
+template Mask<2> samples(const Mask<2>&, const Slice<2>&);
+template Mask<2> samples(const Mask<3>&, const Slice<3>&);
 template Image<float, 2> pixels<2>(const Image<float, 2>&, const Slice<2>&);
 template Image<float, 2> pixels<3>(const Image<float, 3>&, const Slice<3>&);
 

@@ -31,8 +31,8 @@ template <int Dim>
 std::vector<Slice<Dim>> slices(const Raster<Dim>& raster);
 
 /// The samples of the slice on a grid of their own.
-template <int Dim>
-Image<float, 2> samples(const Image<float, Dim>& image, const Slice<Dim>& slice);
+template <typename Pixel, int Dim>
+Image<Pixel, 2> samples(const Image<Pixel, Dim>& image, const Slice<Dim>& slice);
 
 /// The same, resampled to the slice's pixels.
 template <int Dim>
@@ -40,8 +40,10 @@ Image<float, 2> pixels(const Image<float, Dim>& image, const Slice<Dim>& slice);
 
 extern template std::vector<Slice<2>> slices<2>(const Raster<2>&);
 extern template std::vector<Slice<3>> slices<3>(const Raster<3>&);
-extern template Image<float, 2> samples<2>(const Image<float, 2>&, const Slice<2>&);
-extern template Image<float, 2> samples<3>(const Image<float, 3>&, const Slice<3>&);
+extern template Image<float, 2> samples(const Image<float, 2>&, const Slice<2>&);
+extern template Image<float, 2> samples(const Image<float, 3>&, const Slice<3>&);
+extern template Mask<2> samples(const Mask<2>&, const Slice<2>&);
+extern template Mask<2> samples(const Mask<3>&, const Slice<3>&);
 extern template Image<float, 2> pixels<2>(const Image<float, 2>&, const Slice<2>&);
 extern template Image<float, 2> pixels<3>(const Image<float, 3>&, const Slice<3>&);
 

@@ -49,6 +49,24 @@ Image<float, Dim> within(const Image<float, Dim>& image, const Mask<Dim>& mask) 
   return result;
 }
 
+/// What layers show, slice by slice: an image, the difference of two, an image within a mask. The images must
+/// stay alive.
+template <int Dim>
+auto samples_of(const Image<float, Dim>& image) {
+  return [&image](const Slice<Dim>& slice) { return samples(image, slice); };
+}
+
+template <int Dim>
+auto difference_of(const Image<float, Dim>& a, const Image<float, Dim>& b) {
+  return [&](const Slice<Dim>& slice) { return difference(samples(a, slice), samples(b, slice)); };
+}
+
+template <int Dim>
+auto samples_within(const Mask<Dim>& mask, const Image<float, Dim>& image) {
+  return
+      [&](const Slice<Dim>& slice) { return within(samples(image, slice), samples(mask, slice)); };
+}
+
 template <int Dim>
 std::string text_of(const Point<Dim>& point) {
   std::string text = "(";
@@ -104,12 +122,12 @@ RegisterStacks<Dim>::RegisterStacks(const RegisterOptions& options, const Regist
 
 template <int Dim>
 int RegisterStacks<Dim>::add_layer(Stack& stack, const std::string& name, const ReportScale& scale,
-                                   const PixelMaker& pixels) {
+                                   const SamplesOfSlice& samples) {
   const int layer = static_cast<int>(stack.shown.layers.size());
   stack.shown.layers.push_back({name, scale, {}});
-  jobs_.push_back([&stack, layer, pixels] {
+  jobs_.push_back([&stack, layer, samples] {
     ReportLayer& to = stack.shown.layers[static_cast<std::size_t>(layer)];
-    to.png = stack.planes.encode(pixels(), to.scale);
+    to.png = stack.planes.encode(samples, to.scale);
   });
   return layer;
 }
@@ -130,9 +148,9 @@ void RegisterStacks<Dim>::add_images() {
   const ReportScale fixed = window(input_.fixed.image);
   const ReportScale moving =
       options_.expects_equal_intensities() ? fixed : window(input_.moving.image);
-  greys_ = {add_layer(fixed_, "fixed", fixed, [this] { return input_.fixed.image; }),
-            add_layer(fixed_, "moving, before", moving, [this] { return images_.before; }),
-            add_layer(fixed_, "warped", moving, [this] { return images_.warped; })};
+  greys_ = {add_layer(fixed_, "fixed", fixed, samples_of(input_.fixed.image)),
+            add_layer(fixed_, "moving, before", moving, samples_of(images_.before)),
+            add_layer(fixed_, "warped", moving, samples_of(images_.warped))};
 }
 
 template <int Dim>
@@ -141,9 +159,9 @@ void RegisterStacks<Dim>::add_differences() {
       report_scale(difference_scale(difference(images_.before, input_.fixed.image)),
                    "difference of intensities");
   differences_ = {add_layer(fixed_, "before: moving \u2212 fixed", scale,
-                            [this] { return difference(images_.before, input_.fixed.image); }),
+                            difference_of(images_.before, input_.fixed.image)),
                   add_layer(fixed_, "after: warped \u2212 fixed", scale,
-                            [this] { return difference(images_.warped, input_.fixed.image); })};
+                            difference_of(images_.warped, input_.fixed.image))};
 }
 
 template <int Dim>
@@ -155,11 +173,11 @@ void RegisterStacks<Dim>::add_maps() {
   determinants.first = 2;
   determinants.special = "folded";
   determinants.special_colour = "#39ff14";
-  const ReportScale strain = report_scale(strain_scale(images_.strain), "|E|, no unit: 0 is rigid");
+  const ReportScale strain = report_scale(strain_scale(within(images_.strain, images_.domain)),
+                                          "|E|, no unit: 0 is rigid");
   maps_ = {add_layer(fixed_, "Jacobian determinant", determinants,
-                     [this] { return within(images_.determinants, images_.domain); }),
-           add_layer(fixed_, "strain", strain,
-                     [this] { return within(images_.strain, images_.domain); })};
+                     samples_within(images_.domain, images_.determinants)),
+           add_layer(fixed_, "strain", strain, samples_within(images_.domain, images_.strain))};
   fixed_.shown.overlays.push_back(
       {"extreme places", ReportOverlay::Look::kPlace, empty_drawings(fixed_.planes)});
   places_overlay_ = static_cast<int>(fixed_.shown.overlays.size()) - 1;
@@ -249,7 +267,7 @@ template <int Dim>
 void RegisterStacks<Dim>::add_deformation() {
   Stack& stack = moving_ ? *moving_ : fixed_;
   deformed_layer_ = moving_ ? add_layer(stack, "moving", window(input_.moving.image),
-                                        [this] { return input_.moving.image; })
+                                        samples_of(input_.moving.image))
                             : greys_[1];
   deformed_overlays_ = {add_overlay(stack, "deformed grid", ReportOverlay::Look::kGrid,
                                     [this, &stack](auto& overlay) { draw_grid(stack, overlay); })};

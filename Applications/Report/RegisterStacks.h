@@ -29,7 +29,7 @@ class RegisterStacks {
   void add_to(HtmlReport& report);
 
  private:
-  using PixelMaker = std::function<Image<float, Dim>()>;
+  using SamplesOfSlice = typename ReportPlanes<Dim>::SamplesOfSlice;
   static constexpr int kFixedStack = 0, kMovingStack = 1;
   struct Stack {
     explicit Stack(const Raster<Dim>& on) : raster(on), planes(on) {
@@ -43,7 +43,7 @@ class RegisterStacks {
 
   /// @return the layer's number; its pixels are made by a job.
   int add_layer(Stack& stack, const std::string& name, const ReportScale& scale,
-                const PixelMaker& pixels);
+                const SamplesOfSlice& samples);
   /// @return the overlay's number. The drawings are made by a job.
   int add_overlay(Stack& stack, const std::string& name, ReportOverlay::Look look,
                   const std::function<void(ReportOverlay&)>& draw);

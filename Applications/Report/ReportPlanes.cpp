@@ -194,13 +194,13 @@ std::optional<typename ReportPlanes<Dim>::Spot> ReportPlanes<Dim>::spot(
 }
 
 template <int Dim>
-std::vector<std::string> ReportPlanes<Dim>::encode(const Image<float, Dim>& image,
+std::vector<std::string> ReportPlanes<Dim>::encode(const SamplesOfSlice& samples,
                                                    const ReportScale& scale) const {
   std::vector<std::string> png;
   for (const auto& plane : slices_) {
     std::vector<std::uint8_t> atlas;
     for (const Slice<Dim>& slice : plane) {
-      const auto bytes = reduced(samples(image, slice), slice.width, slice.height, scale);
+      const auto bytes = reduced(samples(slice), slice.width, slice.height, scale);
       atlas.insert(atlas.end(), bytes.begin(), bytes.end());
     }
     png.push_back(encode_png(plane.front().width,

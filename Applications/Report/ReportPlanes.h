@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ namespace crease {
 template <int Dim>
 class ReportPlanes {
  public:
+  /// An image's samples in a slice (PicturesSlices.h).
+  using SamplesOfSlice = std::function<Image<float, 2>(const Slice<Dim>&)>;
   /// A slice of a plane, and a point's place in its pixels.
   struct Spot {
     int slice = 0;
@@ -35,7 +38,7 @@ class ReportPlanes {
   /// Where a point in mm is seen in a plane; none beyond the raster's edges.
   std::optional<Spot> spot(int plane, const Point<Dim>& point) const;
   /// One PNG per plane. Shrunk pixels are the means of what they cover, but special where one sample is.
-  std::vector<std::string> encode(const Image<float, Dim>& image, const ReportScale& scale) const;
+  std::vector<std::string> encode(const SamplesOfSlice& samples, const ReportScale& scale) const;
 
  private:
   int axis(int plane) const;  // across the slices

@@ -244,7 +244,7 @@
   const range = (label, attributes, show, change) => {
     const output = make('output', {}, show(attributes.value));
     const input = make('input', { type: 'range', ...attributes, 'aria-label': label });
-    const node = make('label', {}, make('span', { class: 'word' }, label), input, output);
+    const node = make('label', { class: 'range' }, make('span', { class: 'word' }, label), input, output);
     node.set = (value) => {
       input.value = value;
       output.textContent = show(Number(input.value));
@@ -321,7 +321,7 @@
         this.planeInputs = stack.planes.map((plane, p) => make('input', {
           type: 'radio', name, checked: p === stack.plane, onchange: () => stack.go(p, stack.slice[p]) }));
         this.bar.append(make('div', { class: 'modes', role: 'radiogroup', 'aria-label': 'Plane' },
-          stack.planes.map((plane, p) => make('label', {}, this.planeInputs[p], plane.name))));
+          stack.planes.map((plane, p) => make('label', {}, this.planeInputs[p], make('span', {}, plane.name)))));
       }
       if (!stack.planes.some((plane) => plane.slices.length > 1)) return;
       this.sliceInput = range('Slice', { min: 0, max: 1, value: 0 }, (s) => stack.shown().slices[s]?.label ?? '',
@@ -441,7 +441,7 @@
       this.modeInputs = Object.keys(this.modes).map((mode) => make('input', { type: 'radio',
         name: `mode-${this.figure.dataset.viewer}`, value: mode, checked: mode === this.mode, onchange: () => this.choose(mode) }));
       this.bar.append(make('div', { class: 'modes', role: 'radiogroup', 'aria-label': 'Way to compare' },
-        this.modeInputs.map((input) => make('label', {}, input, input.value[0].toUpperCase() + input.value.slice(1)))),
+        this.modeInputs.map((input) => make('label', {}, input, make('span', {}, input.value[0].toUpperCase() + input.value.slice(1))))),
       ...Object.values(this.modes), this.autoLabel);
     }
     addLayers() {
@@ -542,6 +542,7 @@
       }[this.mode];
       this.chips[1].textContent = names[1];
       this.chips[1].hidden = !is('swipe');
+      this.chips[0].classList.toggle('alone', !is('swipe'));
     }
   }
 

@@ -500,19 +500,21 @@
       this.selects.forEach((select, side) => { select.value = this.layers[side]; });
       const [sheet] = this.sheets;
       await Promise.all(this.layers.map((layer, side) => sheet.paint(side, layer)));
-      if (this.mode === 'checkerboard') sheet.canvases.forEach((canvas, side) => this.cutTiles(canvas, side));
+      if (this.mode === 'checkerboard') this.layTiles(...sheet.canvases);
       this.show();
     }
-    /// Clears every other tile: those of the first layer where the second one shows, and the other way round.
-    cutTiles(canvas, side) {
+    /// Puts every other tile of the upper canvas into the lower one. (Two canvases with holes would show seams.)
+    layTiles(below, above) {
       const { width, height, widthMm, heightMm } = this.stack.shown();
-      const tile = Math.max(widthMm, heightMm) / this.modes.checkerboard.get();
-      const [dx, dy] = [tile * width / widthMm, tile * height / heightMm];
-      const context = canvas.getContext('2d');
+      const side = Math.max(widthMm, heightMm) / this.modes.checkerboard.get();
+      const [dx, dy] = [side * width / widthMm, side * height / heightMm];
+      const context = below.getContext('2d');
       for (let j = 0; j * dy < height; ++j) {
-        for (let i = (j + side + 1) % 2; i * dx < width; i += 2) {
+        for (let i = (j + 1) % 2; i * dx < width; i += 2) {
           const [x, y] = [Math.round(i * dx), Math.round(j * dy)];
-          context.clearRect(x, y, Math.round((i + 1) * dx) - x, Math.round((j + 1) * dy) - y);
+          const tile = [x, y, Math.round((i + 1) * dx) - x, Math.round((j + 1) * dy) - y];
+          context.clearRect(...tile);
+          context.drawImage(above, ...tile, ...tile);
         }
       }
     }
@@ -529,7 +531,7 @@
       // Where the second layer has no value, the first must not show through.
       below.style.visibility = is('flicker') && this.front ? 'hidden' : 'visible';
       below.style.clipPath = is('swipe') ? `inset(0 ${100 - at}% 0 0)` : '';
-      above.style.visibility = is('flicker') && !this.front ? 'hidden' : 'visible';
+      above.style.visibility = is('checkerboard') || (is('flicker') && !this.front) ? 'hidden' : 'visible';
       above.style.clipPath = is('swipe') ? `inset(0 0 0 ${at}%)` : '';
       above.style.opacity = is('blend') ? this.modes.blend.get() / 100 : 1;
       const names = this.layers.map((layer) => this.stack.layers[layer].name);

@@ -148,6 +148,7 @@ std::optional<ConfigValue> current_value(const Option& option) {
           [](std::vector<double>* value) { return value->empty() ? Result() : Result(*value); },
           [&](std::vector<std::string>* value) {
             if (value->empty()) return Result();
+            if (value->size() == 1) return Result(saved_text(option, value->front()));
             std::vector<std::string> texts;
             for (const std::string& text : *value) texts.push_back(saved_text(option, text));
             return Result(texts);
@@ -161,6 +162,9 @@ std::string default_text(const Option& option) {
                         [](int* value) { return message(*value); },
                         [](double* value) { return message(*value); },
                         [](std::string* value) { return *value; },
+                        [](std::vector<std::string>* value) {
+                          return value->empty() ? std::string() : value->front();
+                        },
                         [](auto*) { return std::string(); },
                     },
                     option.target);

@@ -21,7 +21,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kDetails =
-    R"(Writes into DIR: warped.* (the moving image on the fixed grid), displacement.mha (T(x) - x in mm),
+    R"(Writes into DIR: warped.* (the moving image on the fixed grid; of further channels warped-2.* and so on),
+displacement.mha (T(x) - x in mm),
 jacobian.mha, transform.json (for crease warp), transform.tfm (for ITK, 3D Slicer and ANTs; rigid and
 affine maps, B-splines of degree 1 to 3), pictures/*.png, report.html (one file for the browser, to judge
 the result by looking), config.toml and, last, result.json.
@@ -80,14 +81,27 @@ Json adaptation_json(const std::vector<RefinementRound>& rounds) {
   return json;
 }
 
+Json metric_json(const RegisterOptions& options, double before, double after,
+                 const std::vector<ChannelReport>& channels) {
+  Json json = {{"name", options.metric_name()}, {"before", before}, {"after", after}};
+  json["channels"] = Json::array();
+  for (const ChannelReport& channel : channels) {
+    json["channels"].push_back({{"name", channel.name},
+                                {"before", channel.before},
+                                {"after", channel.after},
+                                {"weight", channel.weight}});
+  }
+  return json;
+}
+
 template <int Dim>
 Json figures_json(const RegisterOptions& options, const RegisterInput<Dim>& input,
                   const RegisterOutcome<Dim>& outcome, const Evaluation<Dim>& evaluation,
                   const InvertibilityCertificate<Dim>& certificate) {
   const LandmarkErrors landmarks = landmark_errors(input.landmarks, *outcome.transform);
   Json json;
-  json["metric"] = {
-      {"name", options.metric}, {"before", outcome.metric_before}, {"after", outcome.metric_after}};
+  json["metric"] =
+      metric_json(options, outcome.metric_before, outcome.metric_after, outcome.channels);
   if (evaluation.match) {
     json["ssd_reduction_percent"] = evaluation.match->ssd_reduction_percent;
     json["ncc"] = {{"before", evaluation.match->ncc_before},
@@ -138,8 +152,14 @@ std::string summary_text(const RegisterOptions& options, const RegisterInput<Dim
     text += fmt::format(", {} control points", outcome.control_points);
   text += fmt::format(", {} free parameters, {:.2f} s\n", outcome.free_parameters, seconds);
   if (options.has_metric()) {
-    text += fmt::format("{:<22} {:.5g} -> {:.5g}\n", options.metric, outcome.metric_before,
+    text += fmt::format("{:<22} {:.5g} -> {:.5g}\n", options.metric_name(), outcome.metric_before,
                         outcome.metric_after);
+    for (std::size_t c = 0; c < outcome.channels.size() && options.num_channels() > 1; ++c) {
+      const ChannelReport& channel = outcome.channels[c];
+      text += fmt::format("{:<22} {:.5g} -> {:.5g}\n",
+                          fmt::format("  channel {}, {}", c + 1, channel.name), channel.before,
+                          channel.after);
+    }
   }
   text += summary(evaluation);
   text += fmt::format("{:<22} {}\n", "invertible", certificate_text(certificate));
@@ -183,7 +203,8 @@ bool fails_gate(const RegisterOptions& options, const Evaluation<Dim>& evaluatio
 }
 
 std::vector<std::string> input_files(const RegisterOptions& o) {
-  std::vector<std::string> files = {o.fixed, o.moving};
+  std::vector<std::string> files = o.fixed;
+  files.insert(files.end(), o.moving.begin(), o.moving.end());
   for (const auto* file :
        {&o.fixed_mask, &o.moving_mask, &o.roi, &o.rigid_labels, &o.feature_lines}) {
     if (*file) files.push_back(**file);

@@ -6,6 +6,7 @@
 
 #include "Applications/ExitCode.h"
 #include "Applications/TransformInput.h"
+#include "Images/RasterCheck.h"
 #include "Transforms/AffineEquivalent.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 
@@ -67,10 +68,15 @@ LabelImage<Dim> read_bodies(const RegisterOptions& options, const Raster<Dim>& f
 }  // namespace
 
 int dimension_of(const RegisterOptions& options) {
-  const int dimension = InputFiles::common_dimension({options.fixed, options.moving});
+  std::vector<std::string> files;
+  for (std::size_t c = 0; c < options.num_channels(); ++c) {
+    files.insert(files.end(), {options.fixed[c], options.moving[c]});
+  }
+  const int dimension = InputFiles::common_dimension(files);
   if (dimension == 3 && options.has_triangles()) {
     throw UsageError(message("--transform triangular-bspline works on 2D images, and ",
-                             options.fixed, " is 3D; take bspline, affine or rigid for volumes."));
+                             options.fixed.front(),
+                             " is 3D; take bspline, affine or rigid for volumes."));
   }
   return dimension;
 }
@@ -79,9 +85,18 @@ template <int Dim>
 RegisterInput<Dim> read_input(const RegisterOptions& options, RunReport& report) {
   InputFiles input(report, options.spacing);
   RegisterInput<Dim> read;
-  read.fixed = input.image<Dim>("fixed", options.fixed);
-  read.moving = input.image<Dim>("moving", options.moving);
+  read.fixed = input.image<Dim>("fixed", options.fixed.front());
+  read.moving = input.image<Dim>("moving", options.moving.front());
   const Raster<Dim>& fixed = read.fixed.image.raster();
+  for (std::size_t c = 1; c < options.num_channels(); ++c) {
+    read.further_fixed.push_back(input.image<Dim>("fixed", options.fixed[c]));
+    read.further_moving.push_back(input.image<Dim>("moving", options.moving[c]));
+    const Raster<Dim>& own = read.further_fixed.back().image.raster();
+    if (same_raster(own, fixed)) continue;
+    throw InvalidInput(message("the fixed images have different grids: ", options.fixed.front(),
+                               " has ", describe(fixed), ", ", options.fixed[c], " has ",
+                               describe(own), "; resample one onto the other's grid."));
+  }
   if (options.fixed_mask) {
     read.fixed_mask = on_raster(input.mask<Dim>("fixed-mask", *options.fixed_mask), fixed);
   }

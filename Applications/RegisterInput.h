@@ -16,7 +16,8 @@ namespace crease {
 template <int Dim>
 struct RegisterInput {
   ReadImage<Dim> fixed, moving;
-  std::optional<Mask<Dim>> fixed_mask, moving_mask;
+  std::vector<ReadImage<Dim>> further_fixed, further_moving;  ///< of further channels
+  std::optional<Mask<Dim>> fixed_mask, moving_mask;           ///< of all channels
   std::optional<LabelImage<Dim>> labels;
   Landmarks<Dim> landmarks;
   std::optional<RegionOfInterest> region;  ///< 2D

@@ -9,6 +9,8 @@ namespace {
 
 const std::vector<std::string> kStarts = {"moments", "centres", "landmarks", "identity"};
 
+std::string times(std::size_t n) { return n == 1 ? "once" : message(n, " times"); }
+
 /// Refuses an option that the transform chosen would ignore.
 void refuse_if(bool given, const char* option, const RegisterOptions& options, const char* needs) {
   if (!given) return;
@@ -115,12 +117,43 @@ void check_weights(const RegisterOptions& o) {
   }
 }
 
+void check_channels(const RegisterOptions& o) {
+  const std::size_t n = o.num_channels();
+  if (o.moving.size() != n) {
+    throw UsageError(message("--fixed is given ", times(n), ", but --moving ",
+                             times(o.moving.size()), "; each channel needs both."));
+  }
+  if (o.metric.size() != 1 && o.metric.size() != n) {
+    throw UsageError(message("--metric is given ", times(o.metric.size()), " for ", n,
+                             n == 1 ? " channel" : " channels",
+                             "; give one for all channels, or one for each."));
+  }
+  if (o.metric.size() > 1 && std::ranges::count(o.metric, "none") > 0) {
+    throw UsageError("--metric none is for landmarks alone; leave the channel out instead.");
+  }
+  const auto& weights = o.channel_weights;
+  if (weights.empty()) return;
+  if (weights.size() != n) {
+    throw UsageError(message("--channel-weights has ", weights.size(), " for ", n,
+                             n == 1 ? " channel" : " channels", "; give one for each."));
+  }
+  if (n == 1) {
+    throw UsageError(
+        "--channel-weights weighs several channels against each other; with one, take --alpha.");
+  }
+  if (std::ranges::max(weights) == 0) {
+    throw UsageError("--channel-weights are all zero; give at least one above 0.");
+  }
+}
+
 std::vector<Option> input_options(RegisterOptions& o) {
   return {
       {.name = "fixed",
        .target = &o.fixed,
        .placeholder = "FILE",
-       .help = "Fixed image: the space that results live in",
+       .help = "Fixed image: the space that results live in; given again for each further channel, "
+               "with "
+               "a --moving of its own",
        .required = true,
        .is_path = true},
       {.name = "moving",
@@ -235,8 +268,14 @@ std::vector<Option> cost_options(RegisterOptions& o) {
       {.name = "metric",
        .target = &o.metric,
        .help = "Likeness: sum of squared differences, mutual information, normalised mutual "
-               "information, correlation, correlation in windows, or landmarks alone",
+               "information, correlation, correlation in windows, or landmarks alone; once for all "
+               "channels, or once for each",
        .choices = {"ssd", "mi", "nmi", "ncc", "lncc", "none"}},
+      {.name = "channel-weights",
+       .target = &o.channel_weights,
+       .placeholder = "W1,W2,...",
+       .help = "Weights of the channels in the sum of their metrics (1 each)",
+       .minimum = 0},
       {.name = "interpolator",
        .target = &o.interpolator,
        .help = "Between the pixels of the moving image",
@@ -304,6 +343,13 @@ std::vector<Option> solver_options(RegisterOptions& o) {
 
 }  // namespace
 
+std::string RegisterOptions::metric_name() const {
+  if (std::ranges::count(metric, metric.front()) == std::ssize(metric)) return metric.front();
+  std::string names;
+  for (const std::string& name : metric) names += (names.empty() ? "" : "+") + name;
+  return names;
+}
+
 bool RegisterOptions::init_is_file() const {
   return init && std::ranges::count(kStarts, *init) == 0;
 }
@@ -318,6 +364,7 @@ std::vector<Option> options_of(RegisterOptions& options) {
 }
 
 void check(const RegisterOptions& options) {
+  check_channels(options);
   check_transform(options);
   check_adaptation(options);
   check_landmarks(options);

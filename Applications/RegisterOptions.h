@@ -12,7 +12,8 @@ namespace crease {
 /// The options of `crease register`, as they were typed.
 struct RegisterOptions {
   RunOptions run;
-  std::string fixed, moving, output;
+  std::vector<std::string> fixed, moving;  ///< of each channel
+  std::string output;
   std::string transform = "triangular-bspline";
   std::optional<int> degree, smoothness;
   std::optional<double> mesh_size;
@@ -24,7 +25,8 @@ struct RegisterOptions {
   std::string landmarks_mode = "exact";
   std::optional<double> landmarks_sigma;
   std::string landmarks_conflict = "error";
-  std::string metric = "ssd";
+  std::vector<std::string> metric = {"ssd"};  ///< of all channels, or of each
+  std::vector<double> channel_weights;        ///< empty: 1 each
   std::optional<std::string> fixed_mask, moving_mask;
   std::string interpolator = "cubic";
   double alpha = 1;
@@ -45,8 +47,16 @@ struct RegisterOptions {
   bool can_adapt() const { return has_triangles(); }
   /// Whether its degree can be chosen.
   bool has_degree() const { return is_triangular() || transform == "bspline"; }
-  bool has_metric() const { return metric != "none"; }
-  bool expects_equal_intensities() const { return metric == "ssd" || !has_metric(); }
+  std::size_t num_channels() const { return fixed.size(); }
+  const std::string& metric_of(std::size_t channel) const {
+    return metric[metric.size() == 1 ? 0 : channel];
+  }
+  double weight_of(std::size_t channel) const {
+    return channel_weights.empty() ? 1 : channel_weights[channel];
+  }
+  std::string metric_name() const;  ///< of the sum over channels, as MetricSum::name()
+  bool has_metric() const { return metric.front() != "none"; }
+  bool expects_equal_intensities() const { return metric.front() == "ssd" || !has_metric(); }
   int spline_degree() const { return transform == "powell-sabin" ? 2 : degree.value_or(3); }
   int spline_smoothness() const { return smoothness.value_or(spline_degree() - 1); }
   /// Weights as they hold: alpha of the metric, beta of rigidity, 0 where a term is absent.

@@ -40,18 +40,18 @@ std::string single_file_ending(const std::string& moving, ImageFormat format) {
 }
 
 template <int Dim>
-void write_warped(const OutputFolder& output, const RegisterOptions& options,
+void write_warped(const OutputFolder& output, const std::string& name, const std::string& file_name,
                   const ReadImage<Dim>& moving, Image<float, Dim> warped) {
   std::ranges::replace_if(
       warped.values(), [](float value) { return std::isnan(value); }, 0.0f);
-  const std::string ending = single_file_ending(options.moving, moving.format);
+  const std::string ending = single_file_ending(file_name, moving.format);
   const bool own_format = !ending.empty() && can_write(moving.format, moving.pixel_type);
   if (own_format) {
-    output.write("warped" + ending,
+    output.write(name + ending,
                  [&](const Path& file) { write_image(file, warped, moving.pixel_type); });
   }
   if (own_format && has_spacing(moving.format)) return;
-  output.write("warped.mha",
+  output.write(name + ".mha",
                [&](const Path& file) { write_image(file, warped, PixelType::kFloat); });
 }
 
@@ -77,8 +77,14 @@ RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterIn
   RegisterImages<Dim> images{transform_images(transform, raster), {}, {}};
   const auto kind =
       options.interpolator == "linear" ? InterpolationKind::kLinear : InterpolationKind::kCubic;
-  images.warped = resample(*make_interpolator(input.moving.image, kind), raster,
-                           row_map(images.displacement), std::numeric_limits<float>::quiet_NaN());
+  const auto warp = [&](const Image<float, Dim>& moving) {
+    return resample(*make_interpolator(moving, kind), raster, row_map(images.displacement),
+                    std::numeric_limits<float>::quiet_NaN());
+  };
+  images.warped = warp(input.moving.image);
+  for (const auto& moving : input.further_moving) {
+    images.further_warped.push_back(warp(moving.image));
+  }
   const PointMap<Dim> stay = [](const Point<Dim>& x) { return x; };
   images.before = resample(*make_interpolator(input.moving.image, InterpolationKind::kLinear),
                            raster, stay, std::numeric_limits<float>::quiet_NaN());
@@ -111,7 +117,11 @@ template <int Dim>
 void write_results(const OutputFolder& output, const RegisterOptions& options,
                    const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,
                    const RegisterImages<Dim>& images) {
-  write_warped(output, options, input.moving, images.warped);
+  write_warped(output, "warped", options.moving.front(), input.moving, images.warped);
+  for (std::size_t c = 1; c < options.num_channels(); ++c) {
+    write_warped(output, message("warped-", c + 1), options.moving[c], input.further_moving[c - 1],
+                 images.further_warped[c - 1]);
+  }
   output.write("displacement.mha",
                [&](const Path& file) { write_displacement_field(file, images.displacement); });
   output.write("jacobian.mha", [&](const Path& file) {

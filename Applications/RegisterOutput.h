@@ -14,8 +14,9 @@ namespace crease {
 /// Images that follow from the transform, on the fixed grid.
 template <int Dim>
 struct RegisterImages : TransformImages<Dim> {
-  Image<float, Dim> warped;  ///< moving(T(x)); NaN outside the moving image
-  Image<float, Dim> before;  ///< moving(x), the same
+  Image<float, Dim> warped;                       ///< moving(T(x)); NaN outside the moving image
+  Image<float, Dim> before;                       ///< moving(x), the same
+  std::vector<Image<float, Dim>> further_warped;  ///< of further channels
 };
 
 template <int Dim>
@@ -28,7 +29,7 @@ Evaluation<Dim> evaluate_outcome(const RegisterOptions& options, const RegisterI
                                  const RegisterOutcome<Dim>& outcome,
                                  const RegisterImages<Dim>& images);
 
-/// warped.*, displacement.mha, jacobian.mha, transform.json and, where ITK has the same, transform.tfm.
+/// warped.* (warped-2.* and so on of further channels), displacement.mha, jacobian.mha, transform.json and, where ITK has the same, transform.tfm.
 template <int Dim>
 void write_results(const OutputFolder& output, const RegisterOptions& options,
                    const RegisterInput<Dim>& input, const RegisterOutcome<Dim>& outcome,

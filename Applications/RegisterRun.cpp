@@ -48,6 +48,24 @@ MetricFactory<Dim> metric_of(const std::string& name) {
   return name == "ncc" ? ncc<Dim>() : ssd<Dim>();
 }
 
+/// What is compared; masks are the first's.
+template <int Dim>
+std::vector<ChannelView<Dim>> channels_of(const RegisterOptions& options,
+                                          const RegisterInput<Dim>& input) {
+  std::vector<ChannelView<Dim>> channels;
+  for (std::size_t c = 0; c < options.num_channels(); ++c) {
+    ChannelView<Dim> channel;
+    channel.fixed = c == 0 ? &input.fixed.image : &input.further_fixed[c - 1].image;
+    channel.moving = c == 0 ? &input.moving.image : &input.further_moving[c - 1].image;
+    channel.fixed_mask = pointer(input.fixed_mask);
+    if (c == 0) channel.moving_mask = pointer(input.moving_mask);
+    channel.metric = metric_of<Dim>(options.metric_of(c));
+    channel.weight = options.weight_of(c);
+    channels.push_back(std::move(channel));
+  }
+  return channels;
+}
+
 /// A, found or given.
 template <int Dim>
 Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Dim>& input,
@@ -61,9 +79,8 @@ Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Di
     }
     return {fit_rigid<Dim>(input.landmarks.fixed, input.landmarks.moving).affine_map(), {}};
   }
-  auto found = align(input.fixed.image, input.moving.image, pointer(input.fixed_mask),
-                     pointer(input.moving_mask), input.landmarks, wanted, progress.callback(),
-                     input.start, metric_of<Dim>(options.metric));
+  auto found = align<Dim>(channels_of(options, input), input.landmarks, wanted, progress.callback(),
+                          input.start);
   if (!found.report.improved) {
     report.add_warning("the initial alignment found no better map than its start, which was kept.");
   }
@@ -82,11 +99,17 @@ RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const Regist
   }
   const AlignmentReport& found = alignment.report;
   const double unit = intensity_unit(input.fixed.image, pointer(input.fixed_mask));
-  // Squares are of normalised intensities; other metrics do not mind.
-  const double scale = options.metric == "ssd" && unit > 0 ? 1 / (unit * unit) : 1;
+  // Squares are of normalised intensities, as those of several channels are; other metrics do not mind.
+  const bool raw = options.num_channels() == 1 && options.metric.front() == "ssd";
+  const double scale = raw && unit > 0 ? 1 / (unit * unit) : 1;
   outcome.alignment = alignment;
   outcome.metric_before = scale * found.metric_before;
   outcome.metric_after = scale * found.metric_after;
+  outcome.channels = found.channels;
+  for (ChannelReport& channel : outcome.channels) {
+    channel.before *= scale;
+    channel.after *= scale;
+  }
   outcome.energies["image"] = outcome.metric_after;
   outcome.weights["image"] = options.image_weight();
   LevelReport level;
@@ -124,7 +147,12 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   if (options.has_metric()) {
     if (input.fixed_mask) registration.fixed_mask(*input.fixed_mask);
     if (input.moving_mask) registration.moving_mask(*input.moving_mask);
-    registration.metric(metric_of<Dim>(options.metric)).image_weight(options.alpha);
+    const auto channels = channels_of(options, input);
+    registration.metric(channels[0].metric, channels[0].weight).image_weight(options.alpha);
+    for (std::size_t c = 1; c < channels.size(); ++c) {
+      const ChannelView<Dim>& further = channels[c];
+      registration.channel({*further.fixed, *further.moving, further.metric, further.weight});
+    }
     weights["image"] = options.alpha;
   }
   registration.interpolation(options.interpolator == "linear" ? InterpolationKind::kLinear
@@ -211,6 +239,7 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
     outcome.transform = result.transform;
     outcome.metric_before = result.metric_before;
     outcome.metric_after = result.metric_after;
+    outcome.channels = result.channels;
     outcome.energies = result.energies;
     for (const auto& [name, weight] : result.weights) outcome.weights[name] = weight;
     outcome.levels = std::move(result.levels);

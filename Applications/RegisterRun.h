@@ -23,6 +23,7 @@ struct RegisterOutcome {
   Alignment<Dim> alignment;
   double metric_before = 0;  ///< at the start; squares are of normalised intensities
   double metric_after = 0;
+  std::vector<ChannelReport> channels;     ///< of the metric, likewise
   std::map<std::string, double> energies;  ///< unweighted
   std::map<std::string, double> weights;   ///< of these
   std::vector<LevelReport> levels;

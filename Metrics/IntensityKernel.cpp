@@ -102,4 +102,8 @@ void correlation_slopes(const CorrelationRow& row) {
   }
 }
 
+void add_scaled(const float* from, float factor, float* to, int count) {
+  for (int i = 0; i < count; ++i) to[i] += factor * from[i];
+}
+
 }  // namespace crease::CREASE_ISA

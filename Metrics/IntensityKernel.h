@@ -42,6 +42,8 @@ using SlopeRowKernel = void(const SlopeRow& row, int dim);
 using ProductSumsKernel = ProductSums(const float* weight, const float* a, const float* b,
                                       int count);
 using WeightSumsKernel = WeightSums(const float* weight, const float* inside, int count);
+/// to += factor * from.
+using AddScaledKernel = void(const float* from, float factor, float* to, int count);
 using CorrelationSlopesKernel = void(const CorrelationRow& row);
 
 namespace baseline {
@@ -49,12 +51,14 @@ SlopeRowKernel carry_slopes;
 ProductSumsKernel product_sums;
 WeightSumsKernel weight_sums;
 CorrelationSlopesKernel correlation_slopes;
+AddScaledKernel add_scaled;
 }  // namespace baseline
 namespace avx2 {
 SlopeRowKernel carry_slopes;
 ProductSumsKernel product_sums;
 WeightSumsKernel weight_sums;
 CorrelationSlopesKernel correlation_slopes;
+AddScaledKernel add_scaled;
 }  // namespace avx2
 
 }  // namespace crease

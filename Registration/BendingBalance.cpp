@@ -6,6 +6,7 @@
 namespace crease {
 
 double BendingBalance::noise_density() const {
+  if (combined_density) return *combined_density;
   if (noise_power) return *noise_power * correlated_measure;
   constexpr double kLeastShare = 0.2;  // of the samples that is left to tell noise by
   const double left = std::max(counted_measure - correlated_measure * determined_parameters,
@@ -19,6 +20,27 @@ double BendingBalance::weight() const {
   return bending_energy > 0
              ? kCaution * 0.5 * noise_density() * determined_parameters / bending_energy
              : std::numeric_limits<double>::infinity();
+}
+
+BendingBalance combined(std::span<const BendingBalance> channels, std::span<const double> weights) {
+  if (channels.size() == 1 && weights.front() == 1) return channels.front();
+  BendingBalance all;
+  double noise = 0, powers = 0;
+  bool known = true;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const BendingBalance& channel = channels[c];
+    all.image_energy += weights[c] * channel.image_energy;
+    all.counted_measure += channel.counted_measure;
+    all.determined_parameters += channel.determined_parameters;
+    noise += weights[c] * channel.noise_density() * channel.determined_parameters;
+    known = known && channel.noise_power;
+    powers += channel.noise_power.value_or(0) / static_cast<double>(channels.size());
+  }
+  all.correlated_measure = channels.front().correlated_measure;
+  if (known) all.noise_power = powers;
+  all.combined_density = all.determined_parameters > 0 ? noise / all.determined_parameters
+                                                       : channels.front().noise_density();
+  return all;
 }
 
 }  // namespace crease

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 namespace crease {
 
@@ -15,6 +16,8 @@ struct BendingBalance {
   double bending_energy = 0;  ///< E_S, unweighted
   /// By the images, of the free ones: determined_parameters().
   double determined_parameters = 0;
+  /// s, where several channels have made it; nullopt: found from the above.
+  std::optional<double> combined_density = std::nullopt;
 
   /// The weight gamma at which the motion is as rough as its parameters' noise explains: 2 gamma E_S = s n,
   /// where s is the residual's power, less what n parameters have taken of it, times the measure in which
@@ -26,5 +29,13 @@ struct BendingBalance {
   /// s, mm^Dim: what 1/2 r^2 per sample stands for in 1/2 int r^2 when it is noise.
   double noise_density() const;
 };
+
+/// One balance, without bending, of channels that are compared at once with the weights w_c: the n_c parameters
+/// that channel c determines are as noisy as it is, in units of its weight,
+///
+///     n = sum_c n_c,     s = sum_c w_c s_c n_c / n.
+///
+/// @param channels  unweighted, but n_c with the weights, so that n is what all determine together.
+BendingBalance combined(std::span<const BendingBalance> channels, std::span<const double> weights);
 
 }  // namespace crease

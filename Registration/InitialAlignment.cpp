@@ -15,7 +15,7 @@
 #include "Optimizers/GaussNewton.h"
 #include "Optimizers/NelderMead.h"
 #include "Registration/AffineObjective.h"
-#include "Registration/ImageLevels.h"
+#include "Registration/ChannelMetric.h"
 #include "Registration/SamplesInside.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/LandmarkFits.h"
@@ -70,22 +70,27 @@ struct SearchLevel {
 
 /// @param start  samples that it maps outside the moving image do not count.
 template <int Dim>
-SearchLevel<Dim> search_level(const ImageLevel<Dim>& level, const AffineMap<Dim>& start,
-                              const MetricFactory<Dim>& metric) {
+SearchLevel<Dim> search_level(std::span<const ChannelLevels<Dim>> channels, std::size_t l,
+                              const AffineMap<Dim>& start) {
   SearchLevel<Dim> search;
-  const Raster<Dim>& raster = level.fixed.raster();
-  std::vector<float> weights = level.weights;
-  keep_samples_inside<Dim>(raster, start, level.moving->raster(), 0, weights);
+  const Raster<Dim>& raster = channels.front().levels[l].fixed.raster();
+  std::vector<std::vector<float>> all_weights;
   Point<Dim> sum = Point<Dim>::Zero();
   double weight = 0;
-  for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
-    for (int i = 0; i < raster.size[0]; ++i) {
-      const double w = weights[static_cast<std::size_t>(r * raster.size[0] + i)];
-      sum += w * (raster.row_start(r) + i * raster.index_to_point().col(0));
-      weight += w;
+  for (const ChannelLevels<Dim>& channel : channels) {
+    const ImageLevel<Dim>& level = channel.levels[l];
+    std::vector<float> weights = level.weights;
+    keep_samples_inside<Dim>(raster, start, level.moving->raster(), 0, weights);
+    for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
+      for (int i = 0; i < raster.size[0]; ++i) {
+        const double w = weights[static_cast<std::size_t>(r * raster.size[0] + i)];
+        sum += w * (raster.row_start(r) + i * raster.index_to_point().col(0));
+        weight += w;
+      }
     }
+    all_weights.push_back(std::move(weights));
   }
-  search.metric = metric(metric_input(level, std::move(weights)));
+  search.metric = channel_metric(channels, l, std::move(all_weights));
   search.centroid = sum / weight;
   const Box<Dim> box = raster.bounds();
   search.radius = (box.upper - search.centroid).cwiseMax(search.centroid - box.lower).norm();
@@ -230,56 +235,86 @@ void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
 }
 
 template <int Dim>
-Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
-                     const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
-                     const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
-                     const RegistrationCallback& progress,
-                     const std::optional<AffineMap<Dim>>& given, const MetricFactory<Dim>& metric) {
-  require_contrast(fixed, fixed_mask, "fixed");
-  require_contrast(moving, moving_mask, "moving");
+Alignment<Dim> align(std::span<const ChannelView<Dim>> channels, const Landmarks<Dim>& landmarks,
+                     const AlignmentOptions& options, const RegistrationCallback& progress,
+                     const GivenMap<Dim>& given) {
+  if (channels.empty()) throw InvalidInput("alignment: there are no images");
+  std::vector<Channel<Dim>> weighed;  // where weights compare
+  std::vector<ChannelView<Dim>> pairs(channels.begin(), channels.end());
+  if (channels.size() > 1 || channels.front().weight != 1) {
+    weighed = normalised(channels);
+    pairs = views(std::span<const Channel<Dim>>(weighed));
+  }
+  const ChannelView<Dim>& first = pairs.front();
+  for (const ChannelView<Dim>& pair : pairs) {
+    require_contrast(*pair.fixed, pair.fixed_mask, "fixed");
+    require_contrast(*pair.moving, pair.moving_mask, "moving");
+  }
   Alignment<Dim> result;
-  result.map =
-      given ? *given : start_map(fixed, moving, fixed_mask, moving_mask, landmarks, options);
-  require_overlap(fixed.raster(), moving.raster(), result.map);
+  result.map = given ? *given
+                     : start_map(*first.fixed, *first.moving, first.fixed_mask, first.moving_mask,
+                                 landmarks, options);
+  for (const ChannelView<Dim>& pair : pairs) {
+    require_overlap(pair.fixed->raster(), pair.moving->raster(), result.map);
+  }
   const AffineMap<Dim> start = result.map;
-  const int largest = *std::max_element(fixed.size().begin(), fixed.size().end());
+  const int largest = std::ranges::max(first.fixed->size());
   const int levels =
       1 + std::max(0, static_cast<int>(std::lround(std::log2(std::max(1.0, largest / 64.0)))));
-  const auto pyramid = image_levels(fixed, moving, fixed_mask, moving_mask,
-                                    options.search == AlignmentSearch::kNone ? 1 : levels);
-  const SearchLevel<Dim> finest = search_level(pyramid.back(), start, metric);
-  result.report.metric_before = value_at(finest, start);
+  const std::vector<ChannelLevels<Dim>> pyramids =
+      channel_levels<Dim>(pairs, options.search == AlignmentSearch::kNone ? 1 : levels);
+  const std::size_t num_levels = pyramids.front().levels.size();
+  const auto level_at = [&](std::size_t l) { return search_level<Dim>(pyramids, l, result.map); };
+  const SearchLevel<Dim> finest = level_at(num_levels - 1);
+  const auto values_at = [&](const AffineMap<Dim>& map, double& value) {
+    value = value_at(finest, map);
+    return channel_values(finest.metric, value);
+  };
+  const auto before = values_at(start, result.report.metric_before);
   if (options.search != AlignmentSearch::kNone) {
-    for (std::size_t l = 0; l < pyramid.size(); ++l) {
-      const SearchLevel<Dim> level = search_level(pyramid[l], result.map, metric);
+    for (std::size_t l = 0; l < num_levels; ++l) {
       if (progress && !progress({.stage = "alignment",
                                  .level = static_cast<int>(l) + 1,
-                                 .num_levels = static_cast<int>(pyramid.size())})) {
+                                 .num_levels = static_cast<int>(num_levels)})) {
         break;
       }
       int& evaluations = result.report.evaluations;
       if (l == 0 && !given && options.start != AlignmentStart::kLandmarks) {
-        result.map = coarse_search(level, result.map, options.try_angles, evaluations);
+        result.map = coarse_search(level_at(l), result.map, options.try_angles, evaluations);
       }
       const bool rigid = options.search == AlignmentSearch::kRigid;
       for (int again = 0; again < 2; ++again) {  // with the samples that are inside by then
-        result.map =
-            refine(search_level(pyramid[l], result.map, metric), result.map, rigid, evaluations);
+        result.map = refine(level_at(l), result.map, rigid, evaluations);
       }
     }
   }
-  result.report.metric_after = value_at(finest, result.map);
+  auto after = values_at(result.map, result.report.metric_after);
   if (result.report.metric_after > result.report.metric_before) {
     result.map = start;
     result.report.metric_after = result.report.metric_before;
     result.report.improved = false;
+    after = before;
   }
+  result.report.channels = channel_reports<Dim>(before, after);
   result.report.angle_deg = rotation_angle_deg<Dim>(result.map.linear);
   result.report.shift_mm = (result.map(finest.centroid) - finest.centroid).norm();
   return result;
 }
 
+template <int Dim>
+Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
+                     const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
+                     const Landmarks<Dim>& landmarks, const AlignmentOptions& options,
+                     const RegistrationCallback& progress,
+                     const std::optional<AffineMap<Dim>>& given, const MetricFactory<Dim>& metric) {
+  const ChannelView<Dim> only{&fixed, &moving, fixed_mask, moving_mask, metric};
+  return align<Dim>(std::span(&only, 1), landmarks, options, progress, given);
+}
+
 #define CREASE_INSTANTIATE(Dim)                                                                 \
+  template Alignment<Dim> align<Dim>(std::span<const ChannelView<Dim>>, const Landmarks<Dim>&,  \
+                                     const AlignmentOptions&, const RegistrationCallback&,      \
+                                     const GivenMap<Dim>&);                                     \
   template Alignment<Dim> align<Dim>(const Image<float, Dim>&, const Image<float, Dim>&,        \
                                      const Mask<Dim>*, const Mask<Dim>*, const Landmarks<Dim>&, \
                                      const AlignmentOptions&, const RegistrationCallback&,      \

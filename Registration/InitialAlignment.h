@@ -1,9 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "Images/Image.h"
+#include "Registration/Channel.h"
 #include "Registration/Landmarks.h"
 #include "Registration/MetricFactories.h"
 #include "Registration/Progress.h"
@@ -36,6 +39,7 @@ struct AlignmentReport {
   double shift_mm = 0;   ///< of the fixed mask's centroid
   bool improved = true;  ///< false: the search found nothing better and the start was kept
   int evaluations = 0;
+  std::vector<ChannelReport> channels;  ///< of the metric, at full resolution
 };
 
 /// A, and how it was found.
@@ -49,11 +53,19 @@ struct Alignment {
 /// landmarks, then a search by the Nelder-Mead simplex on a pyramid (about 64 samples across at the
 /// coarsest level), then Gauss-Newton, by a metric that may be any.
 ///
+/// @param channels   what is compared; the first makes the start. Intensities of several are normalised, so
+///                   that their weights do not depend on units; those of one are taken as they are.
 /// @param landmarks  may be empty; two (rigid) or three (affine) and more replace the start by their
 ///                   least-squares fit when the start asks for landmarks.
 /// @param given      the start, in place of the one that the options name.
 /// @throws InvalidInput when an image is constant in its mask, or when the images do not overlap after the
 /// start; the message names the image, or both boxes.
+template <int Dim>
+Alignment<Dim> align(std::span<const ChannelView<Dim>> channels, const Landmarks<Dim>& landmarks,
+                     const AlignmentOptions& options, const RegistrationCallback& progress = {},
+                     const GivenMap<Dim>& given = std::nullopt);
+
+/// The same for one pair of images.
 template <int Dim>
 Alignment<Dim> align(const Image<float, Dim>& fixed, const Image<float, Dim>& moving,
                      const Mask<Dim>* fixed_mask, const Mask<Dim>* moving_mask,
@@ -73,14 +85,17 @@ template <int Dim>
 void require_overlap(const Raster<Dim>& fixed, const Raster<Dim>& moving,
                      const AffineMap<Dim>& map);
 
-#define CREASE_DECLARE(Dim)                                                                   \
-  extern template Alignment<Dim> align<Dim>(                                                  \
-      const Image<float, Dim>&, const Image<float, Dim>&, const Mask<Dim>*, const Mask<Dim>*, \
-      const Landmarks<Dim>&, const AlignmentOptions&, const RegistrationCallback&,            \
-      const GivenMap<Dim>&, const MetricFactory<Dim>&);                                       \
-  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,      \
-                                             const std::string&);                             \
-  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,           \
+#define CREASE_DECLARE(Dim)                                                                     \
+  extern template Alignment<Dim> align<Dim>(std::span<const ChannelView<Dim>>,                  \
+                                            const Landmarks<Dim>&, const AlignmentOptions&,     \
+                                            const RegistrationCallback&, const GivenMap<Dim>&); \
+  extern template Alignment<Dim> align<Dim>(                                                    \
+      const Image<float, Dim>&, const Image<float, Dim>&, const Mask<Dim>*, const Mask<Dim>*,   \
+      const Landmarks<Dim>&, const AlignmentOptions&, const RegistrationCallback&,              \
+      const GivenMap<Dim>&, const MetricFactory<Dim>&);                                         \
+  extern template void require_contrast<Dim>(const Image<float, Dim>&, const Mask<Dim>*,        \
+                                             const std::string&);                               \
+  extern template void require_overlap<Dim>(const Raster<Dim>&, const Raster<Dim>&,             \
                                             const AffineMap<Dim>&);
 CREASE_DECLARE(2)
 CREASE_DECLARE(3)

@@ -37,19 +37,19 @@ Registration<Dim>::Registration(Image<float, Dim> fixed, Image<float, Dim> movin
   }
   check_finite(fixed, "registration: the fixed image");
   check_finite(moving, "registration: the moving image");
-  parts_->fixed = std::move(fixed);
-  parts_->moving = std::move(moving);
+  parts_->first.fixed = std::move(fixed);
+  parts_->first.moving = std::move(moving);
 }
 
 template <int Dim>
 Registration<Dim>& Registration<Dim>::fixed_mask(Mask<Dim> mask) {
-  parts_->fixed_mask = std::move(mask);
+  parts_->first.fixed_mask = std::move(mask);
   return *this;
 }
 
 template <int Dim>
 Registration<Dim>& Registration<Dim>::moving_mask(Mask<Dim> mask) {
-  parts_->moving_mask = std::move(mask);
+  parts_->first.moving_mask = std::move(mask);
   return *this;
 }
 
@@ -101,8 +101,23 @@ Registration<Dim>& Registration<Dim>::basis(std::shared_ptr<const SplineBasis<Di
 }
 
 template <int Dim>
-Registration<Dim>& Registration<Dim>::metric(MetricFactory<Dim> factory) {
-  parts_->metric = std::move(factory);
+Registration<Dim>& Registration<Dim>::metric(MetricFactory<Dim> factory, double weight) {
+  if (!(weight >= 0) || !std::isfinite(weight)) {
+    throw InvalidInput(message("registration: channel 1 has the weight ", weight,
+                               "; it must be a finite number, 0 or more"));
+  }
+  parts_->first.metric = std::move(factory);
+  parts_->first.weight = weight;
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::channel(Channel<Dim> channel) {
+  if (parts_->first.fixed.empty()) {
+    throw InvalidInput("registration: a further channel needs a first pair of images");
+  }
+  check_channel(channel, parts_->first.fixed.raster(), parts_->further.size() + 2);
+  parts_->further.push_back(std::move(channel));
   return *this;
 }
 
@@ -165,10 +180,12 @@ Registration<Dim>& Registration<Dim>::schedule(Schedule schedule) {
 template <int Dim>
 RegistrationResult<Dim> Registration<Dim>::run(const RegistrationCallback& progress) const {
   if (parts_->has_images()) {
-    require_contrast(*parts_->fixed, parts_->fixed_mask_pointer(), "fixed");
-    require_contrast(*parts_->moving, parts_->moving_mask_pointer(), "moving");
-    if (parts_->initial) {
-      require_overlap(parts_->fixed->raster(), parts_->moving->raster(), *parts_->initial);
+    for (const ChannelView<Dim>& view : parts_->channels()) {
+      require_contrast(*view.fixed, view.fixed_mask, "fixed");
+      require_contrast(*view.moving, view.moving_mask, "moving");
+      if (parts_->initial) {
+        require_overlap(view.fixed->raster(), view.moving->raster(), *parts_->initial);
+      }
     }
   }
   return RegistrationRun<Dim>(*parts_, progress).execute();

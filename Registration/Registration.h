@@ -11,6 +11,7 @@
 #include "Images/MakeInterpolator.h"
 #include "Optimizers/NullSpace.h"
 #include "Optimizers/Optimizer.h"
+#include "Registration/Channel.h"
 #include "Registration/FinerPlaces.h"
 #include "Registration/InitialAlignment.h"
 #include "Registration/LandmarkConstraints.h"
@@ -86,6 +87,7 @@ struct RegistrationResult {
   std::map<std::string, double> weights;   ///< of the energies, as used there
   double metric_before = 0;                ///< finest level, at A
   double metric_after = 0;
+  std::vector<ChannelReport> channels;  ///< of the metric, likewise
   std::vector<LevelReport> levels;
   std::optional<UnfoldingReport> unfolding;  ///< where it was needed
   std::vector<double> landmark_errors_mm;
@@ -135,8 +137,13 @@ class Registration {
   Registration& look_for_finer_places(bool look = true);
   /// Of u; needed.
   Registration& basis(std::shared_ptr<const SplineBasis<Dim>> basis);
-  /// How images are compared; the default is ssd().
-  Registration& metric(MetricFactory<Dim> factory);
+  /// How images are compared; the default is ssd(). The weight is that of the first channel among several.
+  /// @throws InvalidInput for a weight that is negative or not finite.
+  Registration& metric(MetricFactory<Dim> factory, double weight = 1);
+  /// Compares two more images at once, with a metric and a weight of their own: E_I = sum_c w_c E_c. All move
+  /// alike. Optical flow and normalisation work on each channel; the alignment starts from the first.
+  /// @throws InvalidInput as check_channel(), or when there is no first pair of images.
+  Registration& channel(Channel<Dim> channel);
   /// Of the metric, 0 or more; the default is 1. @throws InvalidInput for other values.
   Registration& image_weight(double alpha);
   /// Adds an energy; its weight is 0 or more. The schedule knows the name "bending".

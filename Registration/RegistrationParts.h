@@ -10,14 +10,13 @@ namespace crease {
 /// What a Registration is composed of, with the defaults of what was not set.
 template <int Dim>
 struct RegistrationParts {
-  std::optional<Image<float, Dim>> fixed, moving;
-  std::optional<Mask<Dim>> fixed_mask, moving_mask;
+  Channel<Dim> first;  ///< empty images: none
+  std::vector<Channel<Dim>> further;
   InterpolationKind interpolation = InterpolationKind::kCubic;
   AlignmentOptions alignment;
   std::optional<AffineMap<Dim>> initial;
   std::shared_ptr<const SplineTransform<Dim>> start;  ///< null: found by the run
   std::shared_ptr<const SplineBasis<Dim>> basis;
-  MetricFactory<Dim> metric = ssd<Dim>();
   double image_weight = 1;
   /// An energy to be made, and its weight.
   struct WeightedFactory {
@@ -33,9 +32,12 @@ struct RegistrationParts {
   Schedule schedule;
   bool look_for_finer_places = false;
 
-  bool has_images() const { return fixed.has_value() && image_weight > 0; }
-  const Mask<Dim>* fixed_mask_pointer() const { return fixed_mask ? &*fixed_mask : nullptr; }
-  const Mask<Dim>* moving_mask_pointer() const { return moving_mask ? &*moving_mask : nullptr; }
+  bool has_images() const { return !first.fixed.empty() && image_weight > 0; }
+  std::vector<ChannelView<Dim>> channels() const {
+    std::vector<ChannelView<Dim>> all = views(std::span(&first, 1));
+    for (auto& view : views(std::span(further))) all.push_back(std::move(view));
+    return all;
+  }
 };
 
 }  // namespace crease

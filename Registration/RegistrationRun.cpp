@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "Core/Error.h"
-#include "Images/IntensityRange.h"
+#include "Metrics/MetricSum.h"
 #include "Metrics/TargetDisplacement.h"
 #include "Optimizers/GaussNewton.h"
 #include "Registration/DeterminedParameters.h"
@@ -23,13 +23,6 @@ namespace {
 
 constexpr int kTrialIterations = 2;      // that decide which start is followed
 constexpr int kLargestFlowImage = 1200;  // pixels: larger images give their flow at half the size
-
-template <int Dim>
-Image<float, Dim> scaled(const Image<float, Dim>& image, double factor) {
-  Image<float, Dim> result = image;
-  for (float& v : result.values()) v *= static_cast<float>(factor);
-  return result;
-}
 
 /// The weighted terms that the record's value sums up; none when the optimizer has evaluated another
 /// point since.
@@ -81,10 +74,7 @@ RegistrationResult<Dim> RegistrationRun<Dim>::execute() {
 
 template <int Dim>
 void RegistrationRun<Dim>::normalise_images() {
-  const double unit =
-      intensity_unit(*parts_.fixed, parts_.fixed_mask_pointer());  // checked: above 0
-  fixed_ = scaled(*parts_.fixed, 1 / unit);
-  moving_ = scaled(*parts_.moving, 1 / unit);
+  compared_ = normalised(std::span<const ChannelView<Dim>>(parts_.channels()));
 }
 
 template <int Dim>
@@ -93,9 +83,8 @@ void RegistrationRun<Dim>::find_initial_map() {
     affine_ = *parts_.initial;
   } else if (parts_.has_images()) {
     tell("alignment", 0, 0, 0);
-    const Alignment<Dim> found =
-        align<Dim>(fixed_, moving_, parts_.fixed_mask_pointer(), parts_.moving_mask_pointer(),
-                   parts_.landmarks, parts_.alignment, progress_, std::nullopt, parts_.metric);
+    const Alignment<Dim> found = align<Dim>(views(std::span<const Channel<Dim>>(compared_)),
+                                            parts_.landmarks, parts_.alignment, progress_);
     affine_ = found.map;
     result_.alignment = found.report;
     if (!found.report.improved) {
@@ -152,21 +141,21 @@ void RegistrationRun<Dim>::make_levels() {
     return;
   }
   tell("binding", 0, 0, 0);
-  images_ = image_levels(
-      fixed_, moving_, parts_.fixed_mask_pointer(), parts_.moving_mask_pointer(),
-      parts_.schedule.levels,
+  const auto pairs = views(std::span<const Channel<Dim>>(compared_));
+  channels_ = channel_levels<Dim>(
+      pairs, parts_.schedule.levels,
       {.interpolation = parts_.interpolation, .smooth_finest = parts_.schedule.smooth_finest});
   double factor = 1;
-  for (auto image = images_.rbegin(); image != images_.rend(); ++image) {
-    Level level;
-    level.shrink = image->shrink;
+  levels_.resize(channels_.front().levels.size());
+  for (std::size_t l = levels_.size(); l-- > 0;) {
+    const ImageLevel<Dim>& image = channels_.front().levels[l];
+    Level& level = levels_[l];
+    level.shrink = image.shrink;
     level.bending_factor = factor;
-    level.grid = parts_.basis->bind(image->fixed.raster());
-    keep_samples_in_domain(*level.grid, image->weights);
-    levels_.push_back(std::move(level));
+    level.grid = parts_.basis->bind(image.fixed.raster());
+    for (auto& channel : channels_) keep_samples_in_domain(*level.grid, channel.levels[l].weights);
     factor *= parts_.schedule.level_bending;
   }
-  std::reverse(levels_.begin(), levels_.end());
 }
 
 /// How many samples share the noise of one, by the filters of the pyramid: [1 3 3 1]/8 on coarse levels,
@@ -185,24 +174,31 @@ void RegistrationRun<Dim>::choose_samples(std::size_t l, const std::vector<Phi>&
   constexpr double kMargin = 2;  // pixels of the level: about what a start may be off
   if (!parts_.has_images()) return;
   Level& level = levels_[l];
-  ImageLevel<Dim>& image = images_[l];
-  std::vector<float> weights = image.weights;
-  for (const Phi& start : starts) {
-    keep_samples_inside<Dim>(*level.grid, affine_, start.reshaped(Dim, pattern_->size()),
-                             image.moving->raster(), kMargin, weights);
+  const double volume = level.grid->raster().sample_volume();
+  std::vector<std::vector<float>> all_weights;
+  level.counted_measures.clear();
+  for (const ChannelLevels<Dim>& channel : channels_) {
+    const ImageLevel<Dim>& image = channel.levels[l];
+    std::vector<float> weights = image.weights;
+    for (const Phi& start : starts) {
+      keep_samples_inside<Dim>(*level.grid, affine_, start.reshaped(Dim, pattern_->size()),
+                               image.moving->raster(), kMargin, weights);
+    }
+    double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const double all = std::accumulate(image.weights.begin(), image.weights.end(), 0.0);
+    if (4 * sum < all) {  // a start that is far off: the metric says what is wrong if it stays so
+      weights = image.weights;
+      sum = all;
+    }
+    level.counted_measures.push_back(sum * volume);
+    all_weights.push_back(std::move(weights));
   }
-  double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  const double all = std::accumulate(image.weights.begin(), image.weights.end(), 0.0);
-  if (4 * sum < all) {  // a start that is far off: the metric says what is wrong if it stays so
-    weights = image.weights;
-    sum = all;
-  }
-  level.counted_measure = sum * image.fixed.raster().sample_volume();
-  level.correlated_measure = image.fixed.raster().sample_volume() * correlated_samples(l);
-  std::shared_ptr<Metric<Dim>> metric = parts_.metric(metric_input(image, std::move(weights)));
+  level.correlated_measure = volume * correlated_samples(l);
+  std::shared_ptr<Metric<Dim>> metric = channel_metric<Dim>(channels_, l, std::move(all_weights));
   level.image_weight = parts_.image_weight * metric->unit();
-  level.noise_floor = metric->noise_power() ? -std::numeric_limits<double>::infinity()
-                                            : 1e-11 * parts_.image_weight * level.counted_measure;
+  level.noise_floor = metric->noise_power()
+                          ? -std::numeric_limits<double>::infinity()
+                          : 1e-11 * parts_.image_weight * level.counted_measures.front();
   level.image = std::make_shared<ImageTerm<Dim>>(level.grid, std::move(metric), affine_);
 }
 
@@ -217,22 +213,25 @@ std::unique_ptr<RegistrationObjective<Dim>> RegistrationRun<Dim>::objective(
                                                       std::move(energies));
 }
 
-/// Weighted least squares to a dense optical flow, smooth and rigid as the energies ask for, within the
+/// Weighted least squares to a dense optical flow of each channel, smooth and rigid as the energies ask for, within the
 /// constraints.
 template <int Dim>
-typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Phi& near) {
+typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(
+    const Phi& near, const std::vector<std::size_t>& similar) {
   if constexpr (Dim == 2) {
-    std::size_t l = images_.size() - 1;
-    while (l > 0 &&
-           std::max(images_[l].fixed.size()[0], images_[l].fixed.size()[1]) > kLargestFlowImage) {
-      --l;
+    std::size_t l = levels_.size() - 1;
+    const auto width = [&] { return std::ranges::max(levels_[l].grid->raster().size); };
+    while (l > 0 && width() > kLargestFlowImage) --l;
+    std::vector<MetricSum<2>::Channel> targets;
+    for (std::size_t c : similar) {
+      const ImageLevel<2>& image = channels_[c].levels[l];
+      const FlowField flow = optical_flow(image.fixed, image.weights, *image.moving, affine_);
+      targets.push_back(
+          {std::make_shared<TargetDisplacement<2>>(flow.raster, flow.displacement, flow.weights),
+           channels_[c].weight});
     }
-    const FlowField flow =
-        optical_flow(images_[l].fixed, images_[l].weights, *images_[l].moving, affine_);
-    auto target =
-        std::make_shared<TargetDisplacement<2>>(flow.raster, flow.displacement, flow.weights);
-    ImageTerm<2> fit(levels_[l].grid, target, affine_);
-    const double pixel = fixed_.raster().spacing.minCoeff();
+    ImageTerm<2> fit(levels_[l].grid, std::make_shared<MetricSum<2>>(std::move(targets)), affine_);
+    const double pixel = compared_.front().fixed.raster().spacing.minCoeff();
     auto energies = energies_;
     for (auto& energy : energies) {
       energy.weight = energy.name == "bending" ? 10 * std::pow(pixel, 4) : 100 * pixel * pixel;
@@ -242,10 +241,16 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(const Ph
   return near;
 }
 
+/// Those whose metrics expect similar intensities.
 template <int Dim>
-bool RegistrationRun<Dim>::expects_similar_intensities() const {
-  return !images_.empty() && parts_.metric(metric_input(images_.front(), images_.front().weights))
-                                 ->expects_similar_intensities();
+std::vector<std::size_t> RegistrationRun<Dim>::similar_channels() const {
+  std::vector<std::size_t> similar;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const ImageLevel<Dim>& coarsest = channels_[c].levels.front();
+    const auto metric = channels_[c].metric(metric_input(coarsest, coarsest.weights));
+    if (channels_[c].weight > 0 && metric->expects_similar_intensities()) similar.push_back(c);
+  }
+  return similar;
 }
 
 template <int Dim>
@@ -261,8 +266,9 @@ std::vector<typename RegistrationRun<Dim>::Phi> RegistrationRun<Dim>::starts() {
   const bool pulled = null_space_->rank() > 0 || energies_.size() > parts_.energies.size();
   candidates.push_back(pulled ? StartingPoint<Dim>(pattern_, *null_space_, energies_).smoothest()
                               : Phi::Zero(null_space_->full_size()));
-  if (Dim == 2 && parts_.schedule.optical_flow && expects_similar_intensities()) {
-    candidates.push_back(fitted_to_flow(candidates.front()));
+  if (Dim == 2 && parts_.schedule.optical_flow) {
+    const auto similar = similar_channels();
+    if (!similar.empty()) candidates.push_back(fitted_to_flow(candidates.front(), similar));
   }
   return candidates;
 }
@@ -396,13 +402,41 @@ bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level
   if (finest && !parts_.schedule.require_invertible && folds(phi)) {
     return weights_->stiffen(energies_);
   }
-  return weights_->balance(balance_at(l, phi, level.terms_after), finest, energies_);
+  BendingBalance balance = image_noise(l, level.terms_after.at("image"), phi);
+  balance.bending_energy = level.terms_after.at("bending");
+  return weights_->balance(balance, finest, energies_);
 }
 
+/// What each channel says about noise, at the point of the last evaluation of the level's images, whose value is
+/// given.
 template <int Dim>
-double RegistrationRun<Dim>::determined_by_images(std::size_t l, const Phi& phi) {
-  RegistrationObjective<Dim> image(pattern_, levels_[l].image, levels_[l].image_weight, {});
-  return determined_parameters(image, *objective(levels_[l]), phi, *null_space_, *solver_);
+BendingBalance RegistrationRun<Dim>::image_noise(std::size_t l, double value, const Phi& phi) {
+  std::vector<BendingBalance> channels;
+  std::vector<double> weights;
+  const auto values = channel_values(levels_[l].image->shared_metric(), value);
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    const auto& [metric, weight, own_value] = values[c];
+    if (weight == 0) continue;  // says nothing
+    channels.push_back({.image_energy = metric->unit() * own_value,
+                        .noise_power = metric->noise_power(),
+                        .counted_measure = levels_[l].counted_measures[c],
+                        .correlated_measure = levels_[l].correlated_measure,
+                        .determined_parameters = determined_by(l, metric, weight, phi)});
+    weights.push_back(weight);
+  }
+  return combined(channels, weights);
+}
+
+/// How many parameters one channel of a level determines.
+template <int Dim>
+double RegistrationRun<Dim>::determined_by(std::size_t l,
+                                           const std::shared_ptr<Metric<Dim>>& metric,
+                                           double weight, const Phi& phi) {
+  const Level& level = levels_[l];
+  const auto term = std::make_shared<ImageTerm<Dim>>(level.grid, metric, affine_);
+  RegistrationObjective<Dim> image(pattern_, term, parts_.image_weight * weight * metric->unit(),
+                                   {});
+  return determined_parameters(image, *objective(level), phi, *null_space_, *solver_);
 }
 
 /// Whether the map turns tissue over at a sample of the second finest level.
@@ -411,7 +445,7 @@ bool RegistrationRun<Dim>::folds(const Phi& phi) const {
   SplineTransform<Dim> transform(parts_.basis, affine_);
   transform.set_parameters(phi);
   const std::size_t l = levels_.size() > 1 ? levels_.size() - 2 : 0;
-  return jacobian_map(transform, images_[l].fixed.raster()).statistics().num_folded > 0;
+  return jacobian_map(transform, levels_[l].grid->raster()).statistics().num_folded > 0;
 }
 
 /// Goes on at the finest level until the map is certified not to fold.
@@ -485,19 +519,6 @@ void RegistrationRun<Dim>::optimise() {
 }
 
 template <int Dim>
-BendingBalance RegistrationRun<Dim>::balance_at(std::size_t l, const Phi& phi,
-                                                const std::map<std::string, double>& terms) {
-  const Level& here = levels_[l];
-  const Metric<Dim>& metric = here.image->metric();
-  return {.image_energy = metric.unit() * terms.at("image"),
-          .noise_power = metric.noise_power(),
-          .counted_measure = here.counted_measure,
-          .correlated_measure = here.correlated_measure,
-          .bending_energy = terms.at("bending"),
-          .determined_parameters = determined_by_images(l, phi)};
-}
-
-template <int Dim>
 void RegistrationRun<Dim>::look_for_finer_places(const Phi& phi) {
   const auto bending = std::ranges::find(energies_, "bending", &WeightedEnergy<Dim>::name);
   if (bending == energies_.end())
@@ -508,7 +529,7 @@ void RegistrationRun<Dim>::look_for_finer_places(const Phi& phi) {
   transform.set_parameters(phi);
   const Level& finest = levels_.back();
   const std::size_t l = levels_.size() - 1;
-  const double noise = balance_at(l, phi, result_.levels.back().terms_after).noise_density();
+  const double noise = image_noise(l, terms_at(l, phi).at("image"), phi).noise_density();
   result_.finer_places = finer_places<Dim>({.transform = transform,
                                             .grid = finest.grid,
                                             .metric = finest.image->shared_metric(),
@@ -531,7 +552,10 @@ void RegistrationRun<Dim>::report(const Phi& phi) {
     const ControlPoints<Dim> none = ControlPoints<Dim>::Zero(Dim, pattern_->size());
     ImageTerm<Dim>& image = *levels_.back().image;
     result_.metric_before = image.evaluate(none, 1, nullptr, nullptr);
+    const auto before = channel_values(image.shared_metric(), result_.metric_before);
     result_.metric_after = image.evaluate(phi.reshaped(Dim, pattern_->size()), 1, nullptr, nullptr);
+    const auto after = channel_values(image.shared_metric(), result_.metric_after);
+    result_.channels = channel_reports<Dim>(before, after);
     result_.improved = result_.metric_after < result_.metric_before;
     if (!result_.improved) {
       result_.warnings.push_back("the registration did not improve the match of the images");

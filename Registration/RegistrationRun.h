@@ -7,7 +7,7 @@
 
 #include "Optimizers/DampedSolver.h"
 #include "Registration/AdaptedWeights.h"
-#include "Registration/ImageLevels.h"
+#include "Registration/ChannelMetric.h"
 #include "Registration/RegistrationParts.h"
 
 namespace crease {
@@ -32,9 +32,9 @@ class RegistrationRun {
     std::shared_ptr<ImageTerm<Dim>> image;  // null without images
     double image_weight = 0;                // alpha in the unit of the metric
     double bending_factor = 1;
-    double counted_measure = 0;     // of the samples that count
-    double correlated_measure = 0;  // in which a sample's noise is correlated
-    double noise_floor = 0;         // values of the cost that are rounding alone
+    std::vector<double> counted_measures;  // of each channel's samples that count
+    double correlated_measure = 0;         // in which a sample's noise is correlated
+    double noise_floor = 0;                // values of the cost that are rounding alone
   };
 
   void check_parts() const;
@@ -45,9 +45,9 @@ class RegistrationRun {
   void choose_samples(std::size_t level, const std::vector<Phi>& starts);
   void collect_energies();
   void make_solver();
-  bool expects_similar_intensities() const;
+  std::vector<std::size_t> similar_channels() const;
   std::vector<Phi> starts();
-  Phi fitted_to_flow(const Phi& near);
+  Phi fitted_to_flow(const Phi& near, const std::vector<std::size_t>& similar);
   void optimise();
   std::map<std::string, double> terms_at(std::size_t level, const Phi& phi);
   double correlated_samples(std::size_t level) const;
@@ -56,10 +56,10 @@ class RegistrationRun {
   Round minimise_from(const std::vector<Phi>& starts, std::size_t l, LevelReport& level);
   void book(const Round& round, LevelReport& level);
   bool renew_weights(std::size_t l, const LevelReport& level, const Phi& phi);
-  double determined_by_images(std::size_t l, const Phi& phi);
-  BendingBalance balance_at(std::size_t l, const Phi& phi,
-                            const std::map<std::string, double>& terms);
   void look_for_finer_places(const Phi& phi);
+  BendingBalance image_noise(std::size_t l, double value, const Phi& phi);
+  double determined_by(std::size_t l, const std::shared_ptr<Metric<Dim>>& metric, double weight,
+                       const Phi& phi);
   bool folds(const Phi& phi) const;
   void make_invertible(const Phi& start, Phi& phi);
   Round optimise_level(std::size_t level, const Phi& start,
@@ -76,13 +76,13 @@ class RegistrationRun {
   bool cancelled_ = false;
   std::chrono::steady_clock::time_point last_time_ = std::chrono::steady_clock::now();
 
-  Image<float, Dim> fixed_, moving_;  // normalised
+  std::vector<Channel<Dim>> compared_;  // normalised
   AffineMap<Dim> affine_;
   std::shared_ptr<const NullSpace> null_space_;
   std::shared_ptr<const HessianPattern> pattern_;
   std::vector<WeightedEnergy<Dim>> energies_;
   std::shared_ptr<DampedSolver> solver_;  // kept from level to level
-  std::vector<ImageLevel<Dim>> images_;
+  std::vector<ChannelLevels<Dim>> channels_;
   std::vector<Level> levels_;
   std::optional<AdaptedWeights<Dim>> weights_;  // where wanted
   RegistrationResult<Dim> result_;

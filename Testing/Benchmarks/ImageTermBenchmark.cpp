@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Images/MakeInterpolator.h"
+#include "Metrics/MetricSum.h"
 #include "Metrics/SumOfSquaredDifferences.h"
 #include "Registration/MetricFactories.h"
 #include "Registration/RowTiles.h"
@@ -120,6 +121,21 @@ void BM_FusedMi(benchmark::State& state) { fused_metric(state, mutual_informatio
 void BM_FusedMiCubic(benchmark::State& state) {
   fused_metric(state, mutual_information<2>({.fixed_window = FixedWindow::kCubic}));
 }
+/// Two channels in one sweep: of squared differences, and with mutual information.
+void BM_FusedTwoSsd(benchmark::State& state) {
+  fused_metric(state, [](const MetricInput<2>& input) {
+    return std::make_unique<MetricSum<2>>(
+        std::vector<MetricSum<2>::Channel>{{ssd<2>()(input), 1}, {ssd<2>()(input), 0.5}});
+  });
+}
+void BM_FusedSsdAndMi(benchmark::State& state) {
+  fused_metric(state, [](const MetricInput<2>& input) {
+    return std::make_unique<MetricSum<2>>(std::vector<MetricSum<2>::Channel>{
+        {ssd<2>()(input), 1}, {mutual_information<2>()(input), 0.5}});
+  });
+}
+BENCHMARK(BM_FusedTwoSsd)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
+BENCHMARK(BM_FusedSsdAndMi)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
 BENCHMARK(BM_FusedNcc)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
 BENCHMARK(BM_FusedLncc)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });
 BENCHMARK(BM_FusedMi)->Apply([](auto* b) { sizes(b, "outputs", {0, 1, 2}); });

@@ -12,6 +12,32 @@
 namespace crease {
 namespace {
 
+// Two looks at the same parameters, of half the weight each, are as good as one; a clean channel counts as far
+// as it determines anything.
+TEST(BendingBalance, CombinesChannels) {
+  const BendingBalance noisy{.image_energy = 3,
+                             .counted_measure = 1000,
+                             .correlated_measure = 2,
+                             .determined_parameters = 50};
+  BendingBalance clean = noisy;
+  clean.image_energy = 0.03;
+  const auto density = [](std::vector<BendingBalance> channels, std::vector<double> weights) {
+    return combined(channels, weights).noise_density();
+  };
+  EXPECT_EQ(density({noisy}, {1}), noisy.noise_density());
+  EXPECT_NEAR(density({noisy, noisy}, {1, 1}), noisy.noise_density(), 1e-12);
+  EXPECT_NEAR(density({noisy, noisy}, {0.5, 0.5}), 0.5 * noisy.noise_density(), 1e-12);
+  EXPECT_NEAR(density({noisy, clean}, {1, 1}), 0.505 * noisy.noise_density(), 1e-12);
+  EXPECT_NEAR(density({clean, noisy}, {100, 1}), noisy.noise_density(), 1e-12);
+  clean.determined_parameters = 0;
+  EXPECT_NEAR(density({noisy, clean}, {1, 1}), noisy.noise_density(), 1e-12);
+  EXPECT_EQ(combined(std::vector{noisy, noisy}, std::vector{1.0, 1.0}).determined_parameters, 100);
+  EXPECT_FALSE(combined(std::vector{noisy, clean}, std::vector{1.0, 1.0}).noise_power);
+  clean.noise_power = 1e-3;
+  EXPECT_FALSE(combined(std::vector{noisy, clean}, std::vector{1.0, 1.0}).noise_power);
+  EXPECT_EQ(combined(std::vector{clean, clean}, std::vector{1.0, 1.0}).noise_power, 1e-3);
+}
+
 // gamma E_S = 3/4 s n, s the noise of what n parameters leave of the samples: twice the residual's power asks
 // for twice the weight, twice the bending for half.
 TEST(BendingBalance, IsInProportion) {

@@ -6,6 +6,7 @@
 
 #include "Images/LinearInterpolator.h"
 #include "Metrics/LocalCorrelation.h"
+#include "Metrics/MetricSum.h"
 #include "Metrics/MutualInformation.h"
 #include "Metrics/NormalizedCrossCorrelation.h"
 #include "Metrics/SumOfSquaredDifferences.h"
@@ -43,7 +44,12 @@ std::vector<NamedMetric<Dim>> metrics() {
     target[a].assign(plain.weights.size(), 0.5f * static_cast<float>(a) - 0.7f);
   const MutualInformationOptions box, cubic{.fixed_window = FixedWindow::kCubic},
       normalized{.kind = InformationKind::kNormalized};
+  std::vector<typename MetricSum<Dim>::Channel> channels = {
+      {std::make_shared<SumOfSquaredDifferences<Dim>>(plain), 0.7},
+      {std::make_shared<MutualInformation<Dim>>(masked, box), 2},
+      {std::make_shared<LocalCorrelation<Dim>>(plain, 2), 1}};
   return {
+      {"SSD, MI and LNCC", std::make_shared<MetricSum<Dim>>(std::move(channels)), false},
       {"SSD", std::make_shared<SumOfSquaredDifferences<Dim>>(plain)},
       {"SSD with moving mask", std::make_shared<SumOfSquaredDifferences<Dim>>(masked)},
       {"SSD, linear", std::make_shared<SumOfSquaredDifferences<Dim>>(linear), false},

@@ -37,7 +37,7 @@ struct AdaptiveResult {
 };
 
 /// Registers, looks where the residual force asks for finer patches (finer_places), divides them, carries the
-/// map over and goes on, until nothing significant is asked for, the gain is below a hundredth of the cost, or
+/// map over and goes on, until nothing significant is asked for, the gain expected is below a five-hundredth of the cost, or
 /// the rounds are over. The weights are those that the first registration has found. A round that does not
 /// lower the cost is taken back, so that it never rises by refining.
 ///

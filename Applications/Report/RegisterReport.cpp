@@ -70,7 +70,7 @@ Statement match_statement(const RegisterStory<Dim>& story) {
     return {ReportMood::kBad, "The match did not improve."};
   }
   std::string text =
-      fmt::format("The match improved: {} {} \u2192 {}", story.options.metric,
+      fmt::format("The match improved: {} {} \u2192 {}", story.options.metric_name(),
                   short_text(story.outcome.metric_before), short_text(story.outcome.metric_after));
   if (const auto& match = story.evaluation.match; match && !std::isnan(match->ncc_before)) {
     text += fmt::format(", correlation {:.4f} \u2192 {:.4f}", match->ncc_before, match->ncc_after);
@@ -151,7 +151,8 @@ template <int Dim>
 ReportHead head_of(const RegisterStory<Dim>& story) {
   ReportHead head;
   head.command = "crease register";
-  head.title = file_name(story.options.moving) + " registered to " + file_name(story.options.fixed);
+  head.title = file_name(story.options.moving.front()) + " registered to " +
+               file_name(story.options.fixed.front());
   head.status = status_of(story.result.at("status"));
   head.verdict = {match_statement(story), fold_statement(story.evaluation)};
   if (!story.input.landmarks.empty()) {

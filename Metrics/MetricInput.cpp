@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "Core/Error.h"
-
 namespace crease {
 
 template <int Dim>
@@ -44,7 +42,7 @@ void check(const MetricInput<Dim>& input) {
 
 void check_overlap(const char* metric, double weight_inside, double weight) {
   if (4 * weight_inside >= weight) return;
-  throw SolverError(
+  throw OverlapError(
       message(metric, ": only ", std::lround(100 * weight_inside / weight),
               " % of the samples fall inside the moving image; start from a transform "
               "that makes the images overlap, for example by aligning their centres "

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "Core/Error.h"
 #include "Images/Image.h"
 #include "Images/Interpolator.h"
 
@@ -28,7 +29,13 @@ struct MetricInput {
 template <int Dim>
 void check(const MetricInput<Dim>& input);
 
-/// @throws SolverError when fewer than a quarter of the samples fall inside the moving image.
+/// Too few samples fall inside the moving image.
+class OverlapError : public SolverError {
+ public:
+  using SolverError::SolverError;
+};
+
+/// @throws OverlapError when fewer than a quarter of the samples fall inside the moving image.
 void check_overlap(const char* metric, double weight_inside, double weight);
 
 extern template void check<2>(const MetricInput<2>&);

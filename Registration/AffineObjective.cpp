@@ -1,9 +1,11 @@
 #include "Registration/AffineObjective.h"
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "Core/Parallel.h"
+#include "Metrics/MetricInput.h"
 #include "Registration/RowTiles.h"
 
 namespace crease {
@@ -120,17 +122,15 @@ Eigen::MatrixXd AffineObjective<Dim>::frame_jacobian() const {
   return jacobian;
 }
 
+/// The metric's value; sums its forces and curvature where not null.
 template <int Dim>
-double AffineObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                      Eigen::VectorXd* gradient,
-                                      Eigen::SparseMatrix<double>* hessian) {
-  const AffineMap<Dim> affine = map(parameters);
+double AffineObjective<Dim>::sweep(const AffineMap<Dim>& affine, Moments* total) {
   const Raster<Dim>& raster = metric_->fixed_raster();
   const RowTiles<Dim> tiles(raster);
   const Vector<Dim> step = raster.index_to_point().col(0);
   Eigen::Matrix<double, Dim + 1, 1> coordinate_step;
   coordinate_step << -step.sum() / radius_, step / radius_;
-  const bool derivatives = gradient != nullptr || hessian != nullptr;
+  const bool derivatives = total != nullptr;
 
   std::vector<Moments> moments(static_cast<std::size_t>(tiles.count()));
   double value = 0;
@@ -164,9 +164,28 @@ double AffineObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::VectorXd>& p
     });
     value = metric_->finish_pass(pass, sums);
   }
-  if (!derivatives) return value;
+  if (total != nullptr) {
+    for (const Moments& m : moments) *total += m;
+  }
+  return value;
+}
+
+template <int Dim>
+double AffineObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                      Eigen::VectorXd* gradient,
+                                      Eigen::SparseMatrix<double>* hessian) {
+  const AffineMap<Dim> affine = map(parameters);
+  const bool derivatives = gradient != nullptr || hessian != nullptr;
   Moments total;
-  for (const Moments& m : moments) total += m;
+  double value = 0;
+  try {
+    value = sweep(affine, derivatives ? &total : nullptr);
+  } catch (const OverlapError&) {  // a step that went too far, but for the start
+    if (!evaluated_) throw;
+    return std::numeric_limits<double>::infinity();
+  }
+  evaluated_ = true;
+  if (!derivatives) return value;
   const Eigen::MatrixXd jacobian = frame_jacobian();
   if (gradient != nullptr) *gradient = jacobian.transpose() * total.gradient;
   if (hessian != nullptr) {

@@ -24,6 +24,8 @@ class AffineObjective final : public ObjectiveFunction {
                   const Point<Dim>& frame, double radius);
 
   Eigen::Index size() const override { return transform_->num_parameters(); }
+  /// Infinite where so few samples fall inside the moving image that the metric refuses, unless it is the
+  /// first point of all.
   double evaluate(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::VectorXd* gradient,
                   Eigen::SparseMatrix<double>* hessian) override;
   /// A bound on the movement of the frame's corners, in samples of the fixed image.
@@ -33,12 +35,14 @@ class AffineObjective final : public ObjectiveFunction {
 
  private:
   struct Moments;
+  double sweep(const AffineMap<Dim>& affine, Moments* total);
   Eigen::MatrixXd frame_jacobian() const;
 
   std::shared_ptr<Metric<Dim>> metric_;
   std::unique_ptr<Transform<Dim>> transform_;
   std::array<Point<Dim>, Dim + 1> frame_;
   double radius_;
+  bool evaluated_ = false;  // at least once
 };
 
 extern template class AffineObjective<2>;

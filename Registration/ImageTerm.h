@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "Metrics/Metric.h"
+#include "Registration/RowSubset.h"
 #include "Transforms/AffineMap.h"
 #include "Transforms/BoundGrid.h"
 
@@ -16,14 +17,16 @@ namespace crease {
 template <int Dim>
 class ImageTerm {
  public:
+  /// @param rows  the rows of samples to sweep over; samples of others must have no weight in the metric.
   /// @throws InvalidInput when the metric's fixed raster is not the one the grid is bound to.
   ImageTerm(std::shared_ptr<const BoundGrid<Dim>> grid, std::shared_ptr<Metric<Dim>> metric,
-            AffineMap<Dim> affine);
+            AffineMap<Dim> affine, RowSubset rows = {});
 
   /// The metric's value; adds scale times its gradient (Dim x n) and curvature where not null.
   double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian);
-  /// The largest |sum_i step_i B_i(x)| over all samples, in units of the smallest sample spacing.
+  /// The largest |sum_i step_i B_i(x)| over the samples of every fourth row, in units of the smallest sample
+  /// spacing.
   double largest_step(const Eigen::Ref<const ControlPoints<Dim>>& step) const;
 
   const Metric<Dim>& metric() const { return *metric_; }
@@ -43,6 +46,7 @@ class ImageTerm {
   std::shared_ptr<const BoundGrid<Dim>> grid_;
   std::shared_ptr<Metric<Dim>> metric_;
   AffineMap<Dim> affine_;
+  RowSubset rows_;
 };
 
 extern template class ImageTerm<2>;

@@ -168,17 +168,61 @@ AffineMap<Dim> coarse_search(const SearchLevel<Dim>& level, const AffineMap<Dim>
   return search.objective.map(best_parameters);
 }
 
-/// Gauss-Newton at one level; keeps the start when nothing better is found.
+/// The cost as a function of unknowns that each move the frame by about a pixel per unit, whatever they are.
+class ScaledObjective final : public ObjectiveFunction {
+ public:
+  ScaledObjective(ObjectiveFunction& inner, const Eigen::VectorXd& start)
+      : inner_(inner), start_(start), unit_(start.size()) {
+    for (Eigen::Index i = 0; i < unit_.size(); ++i) {
+      unit_[i] = 1 / inner_.step_length(Eigen::VectorXd::Unit(unit_.size(), i));
+    }
+  }
+  Eigen::VectorXd place(const Eigen::Ref<const Eigen::VectorXd>& u) const {
+    return start_ + unit_.cwiseProduct(u);
+  }
+  Eigen::Index size() const override { return inner_.size(); }
+  double evaluate(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* gradient,
+                  Eigen::SparseMatrix<double>* hessian) override {
+    const double value = inner_.evaluate(place(u), gradient, hessian);
+    if (std::isinf(value)) return value;
+    if (gradient != nullptr) *gradient = gradient->cwiseProduct(unit_);
+    if (hessian != nullptr) *hessian = unit_.asDiagonal() * *hessian * unit_.asDiagonal();
+    return value;
+  }
+  bool preconditioner(const Eigen::Ref<const Eigen::VectorXd>& u,
+                      Eigen::SparseMatrix<double>& matrix) override {
+    evaluate(u, nullptr, &matrix);
+    return true;
+  }
+  double step_length(const Eigen::Ref<const Eigen::VectorXd>& step) const override {
+    return inner_.step_length(unit_.cwiseProduct(step));
+  }
+
+ private:
+  ObjectiveFunction& inner_;
+  Eigen::VectorXd start_, unit_;
+};
+
+std::unique_ptr<Optimizer> refining_optimizer(OptimizerKind kind) {
+  OptimizerOptions stopping{.step_length = 1e-4, .max_iterations = 50};
+  if (kind == OptimizerKind::kGaussNewton) {
+    const GaussNewtonOptions options{.linear_solver = {.kind = LinearSolver::kDirect}};
+    return std::make_unique<GaussNewton>(stopping, options);
+  }
+  stopping.max_iterations = 500;
+  return make_optimizer(kind, stopping);
+}
+
+/// One level; keeps the start when nothing better is found.
 template <int Dim>
 AffineMap<Dim> refine(const SearchLevel<Dim>& level, const AffineMap<Dim>& start, bool rigid,
-                      int& evaluations) {
+                      OptimizerKind kind, int& evaluations) {
   SearchStart<Dim> search = search_start(level, start, rigid);
-  const OptimizerOptions stopping{.step_length = 1e-4, .max_iterations = 50};
-  const GaussNewtonOptions options{.linear_solver = {.kind = LinearSolver::kDirect}};
-  const OptimizerResult found =
-      GaussNewton(stopping, options).minimize(search.objective, search.parameters);
+  ScaledObjective objective(search.objective, search.parameters);
+  const OptimizerResult found = refining_optimizer(kind)->minimize(
+      objective, Eigen::VectorXd::Zero(search.parameters.size()));
   evaluations += found.num_evaluations;
-  return search.objective.map(found.x);
+  return search.objective.map(objective.place(found.x));
 }
 
 template <int Dim>
@@ -284,7 +328,7 @@ Alignment<Dim> align(std::span<const ChannelView<Dim>> channels, const Landmarks
       }
       const bool rigid = options.search == AlignmentSearch::kRigid;
       for (int again = 0; again < 2; ++again) {  // with the samples that are inside by then
-        result.map = refine(level_at(l), result.map, rigid, evaluations);
+        result.map = refine(level_at(l), result.map, rigid, options.optimizer, evaluations);
       }
     }
   }

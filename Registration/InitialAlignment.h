@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Images/Image.h"
+#include "Optimizers/MakeOptimizer.h"
 #include "Registration/Channel.h"
 #include "Registration/Landmarks.h"
 #include "Registration/MetricFactories.h"
@@ -29,6 +30,8 @@ struct AlignmentOptions {
   AlignmentSearch search = AlignmentSearch::kNone;
   /// Also try the angles -30, -15, 15 and 30 degrees (2D) at the coarsest level.
   bool try_angles = true;
+  /// What refines the map at every level.
+  OptimizerKind optimizer = OptimizerKind::kGaussNewton;
 };
 
 /// What the alignment did.
@@ -51,7 +54,7 @@ struct Alignment {
 
 /// Finds the rigid or affine map A that the spline starts from: a start by moments, centres or
 /// landmarks, then a search by the Nelder-Mead simplex on a pyramid (about 64 samples across at the
-/// coarsest level), then Gauss-Newton, by a metric that may be any.
+/// coarsest level), then Gauss-Newton or another optimizer, by a metric that may be any.
 ///
 /// @param channels   what is compared; the first makes the start. Intensities of several are normalised, so
 ///                   that their weights do not depend on units; those of one are taken as they are.

@@ -157,6 +157,18 @@ Registration<Dim>& Registration<Dim>::null_space(NullSpaceKind kind) {
 }
 
 template <int Dim>
+Registration<Dim>& Registration<Dim>::optimizer(OptimizerKind kind) {
+  if (kind == OptimizerKind::kNelderMead) {
+    throw InvalidInput(
+        "registration: Nelder-Mead is for few unknowns, rigid and affine maps; a spline needs an "
+        "optimizer with gradients");
+  }
+  parts_->optimizer_kind = kind;
+  parts_->optimizer = nullptr;
+  return *this;
+}
+
+template <int Dim>
 Registration<Dim>& Registration<Dim>::optimizer(
     std::shared_ptr<const Optimizer>
         optimizer) {  // NOLINT(performance-unnecessary-value-param): moved
@@ -172,6 +184,10 @@ Registration<Dim>& Registration<Dim>::schedule(Schedule schedule) {
   }
   if (!(schedule.level_bending > 0)) {
     throw InvalidInput("registration: level_bending must be positive");
+  }
+  if (!(schedule.sample_fraction > 0 && schedule.sample_fraction <= 1)) {
+    throw InvalidInput(message("registration: a sample_fraction of ", schedule.sample_fraction,
+                               "; give a share above 0 and at most 1"));
   }
   parts_->schedule = schedule;
   return *this;

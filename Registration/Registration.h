@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "Images/Image.h"
 #include "Images/MakeInterpolator.h"
+#include "Optimizers/MakeOptimizer.h"
 #include "Optimizers/NullSpace.h"
 #include "Optimizers/Optimizer.h"
 #include "Registration/Channel.h"
@@ -52,6 +54,9 @@ struct Schedule {
   bool adapt_weights = false;
   /// Go on from a map that folds until one is certified not to (Unfolding).
   bool require_invertible = false;
+  /// Of the rows of samples at all levels but the finest: so many are looked at, chosen by the seed; 0 to 1.
+  double sample_fraction = 1;
+  std::uint64_t seed = 1;
   bool smooth_finest = true;  ///< low-pass [1 2 1]/4 at the finest level, against noise
 };
 
@@ -152,9 +157,13 @@ class Registration {
   Registration& landmarks(Landmarks<Dim> landmarks, LandmarkOptions options = {});
   /// How exact landmarks are eliminated; the results are the same.
   Registration& null_space(NullSpaceKind kind);
-  /// The default is Gauss-Newton with what suits the energies.
+  /// The kind of optimizer, with stopping rules that suit the level; the default is Gauss-Newton.
+  /// @throws InvalidInput for Nelder-Mead, which is for few unknowns.
+  Registration& optimizer(OptimizerKind kind);
+  /// An optimizer with rules of its own, the same at every level.
   Registration& optimizer(std::shared_ptr<const Optimizer> optimizer);
-  /// @throws InvalidInput for levels outside 1 to 12 or a factor that is not positive.
+  /// @throws InvalidInput for levels outside 1 to 12, a factor that is not positive, or a fraction that is
+  /// not above 0 or is above 1.
   Registration& schedule(Schedule schedule);
 
   /// @throws InvalidInput, SolverError; see the parts.

@@ -1,8 +1,13 @@
 #include "Registration/RegistrationObjective.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "Core/Error.h"
+#include "Metrics/MetricInput.h"
+#include "Registration/ScalarStiffness.h"
 
 namespace crease {
 namespace {
@@ -48,7 +53,13 @@ double RegistrationObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::Vector
 
   double value = 0;
   if (image_ != nullptr && image_weight_ > 0) {
-    const double term = image_->evaluate(phi, image_weight_, forces_wanted, curvature);
+    double term = 0;
+    try {
+      term = image_->evaluate(phi, image_weight_, forces_wanted, curvature);
+    } catch (const OverlapError&) {  // a step that went too far, but for the start
+      if (!evaluated_) throw;
+      return std::numeric_limits<double>::infinity();
+    }
     require_finite(term, "image");
     terms_["image"] = term;
     value += image_weight_ * term;
@@ -59,6 +70,7 @@ double RegistrationObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::Vector
     terms_[name] = term;
     value += weight * term;
   }
+  evaluated_ = true;
   if (gradient != nullptr) *gradient = forces.reshaped();
   if (hessian != nullptr) hessian_.to_sparse(*hessian);
   return value;
@@ -73,6 +85,30 @@ std::map<std::string, double> RegistrationObjective<Dim>::weighted_terms() const
     if (term != terms_.end()) weighted[energy.name] = energy.weight * term->second;
   }
   return weighted;
+}
+
+template <int Dim>
+bool RegistrationObjective<Dim>::preconditioner(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                                Eigen::SparseMatrix<double>& matrix) {
+  evaluate(x, nullptr, &matrix);
+  const auto entries = static_cast<std::size_t>(pattern_->num_entries());
+  std::vector<double> stiffness(entries);
+  for (std::size_t s = 0; s < entries; ++s) {
+    stiffness[s] = hessian_.block(static_cast<int>(s)).trace() / Dim;
+  }
+  const std::vector<double> without = stiffness;
+  add_springs(*pattern_, stiffness);
+  const bool coupled = std::ranges::any_of(
+      energies_, [](const auto& energy) { return energy.energy->couples_coordinates(); });
+  if (!coupled) {
+    matrix = lower_triangle(*pattern_, stiffness);
+    return true;
+  }
+  for (std::size_t s = 0; s < entries; ++s) {
+    hessian_.block(static_cast<int>(s)).diagonal().array() += stiffness[s] - without[s];
+  }
+  hessian_.to_sparse(matrix);
+  return true;
 }
 
 template <int Dim>

@@ -32,9 +32,15 @@ class RegistrationObjective final : public ObjectiveFunction {
                         std::vector<WeightedEnergy<Dim>> energies);
 
   Eigen::Index size() const override;
-  /// @throws SolverError when a term is not finite; the message names the term.
+  /// Infinite where so few samples fall inside the moving image that a metric refuses, unless it is the
+  /// first point of all. @throws SolverError when a term is not finite; the message names the term.
   double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
                   Eigen::SparseMatrix<double>* hessian) override;
+  /// Gauss-Newton's matrix at x, with weak springs for what it does not see. Where no energy couples
+  /// coordinates, half the trace of its blocks (a third in 3D) serves them all: bending, and a mass
+  /// matrix weighted by the images' curvature.
+  bool preconditioner(const Eigen::Ref<const Eigen::VectorXd>& x,
+                      Eigen::SparseMatrix<double>& matrix) override;
   /// Largest displacement of the step over the samples, in pixels; mm without an image.
   double step_length(const Eigen::Ref<const Eigen::VectorXd>& step) const override;
 
@@ -50,6 +56,7 @@ class RegistrationObjective final : public ObjectiveFunction {
   std::vector<WeightedEnergy<Dim>> energies_;
   BlockHessian<Dim> hessian_;
   std::map<std::string, double> terms_;
+  bool evaluated_ = false;  // at least once
 };
 
 extern template class RegistrationObjective<2>;

@@ -28,7 +28,8 @@ struct RegistrationParts {
   Landmarks<Dim> landmarks;
   LandmarkOptions landmark_options;
   NullSpaceKind null_space = NullSpaceKind::kElimination;
-  std::shared_ptr<const Optimizer> optimizer;  ///< null: Gauss-Newton, tuned per level
+  OptimizerKind optimizer_kind = OptimizerKind::kGaussNewton;
+  std::shared_ptr<const Optimizer> optimizer;  ///< null: of the kind, tuned per level
   Schedule schedule;
   bool look_for_finer_places = false;
 

@@ -22,6 +22,7 @@ namespace crease {
 namespace {
 
 constexpr int kTrialIterations = 2;      // that decide which start is followed
+constexpr int kGradientIterations = 5;   // of a gradient method, where Gauss-Newton may take one
 constexpr int kLargestFlowImage = 1200;  // pixels: larger images give their flow at half the size
 
 /// The weighted terms that the record's value sums up; none when the optimizer has evaluated another
@@ -162,7 +163,11 @@ void RegistrationRun<Dim>::make_levels() {
 /// [1 2 1]/4 on a smoothed finest one.
 template <int Dim>
 double RegistrationRun<Dim>::correlated_samples(std::size_t level) const {
-  if (levels_[level].shrink > 1) return std::pow(1.6, Dim);
+  if (levels_[level].shrink > 1) {
+    const bool finest = level + 1 == levels_.size();
+    const double apart = finest ? 1.0 : 1 / parts_.schedule.sample_fraction;  // rows
+    return std::pow(1.6, Dim - 1) * std::max(1.6, apart);
+  }
   return parts_.schedule.smooth_finest ? std::pow(8.0 / 3.0, Dim) : 1.0;
 }
 
@@ -175,6 +180,7 @@ void RegistrationRun<Dim>::choose_samples(std::size_t l, const std::vector<Phi>&
   if (!parts_.has_images()) return;
   Level& level = levels_[l];
   const double volume = level.grid->raster().sample_volume();
+  const RowSubset rows = rows_of_level(l);
   std::vector<std::vector<float>> all_weights;
   level.counted_measures.clear();
   for (const ChannelLevels<Dim>& channel : channels_) {
@@ -191,6 +197,7 @@ void RegistrationRun<Dim>::choose_samples(std::size_t l, const std::vector<Phi>&
       sum = all;
     }
     level.counted_measures.push_back(sum * volume);
+    rows.apply(weights);
     all_weights.push_back(std::move(weights));
   }
   level.correlated_measure = volume * correlated_samples(l);
@@ -199,7 +206,14 @@ void RegistrationRun<Dim>::choose_samples(std::size_t l, const std::vector<Phi>&
   level.noise_floor = metric->noise_power()
                           ? -std::numeric_limits<double>::infinity()
                           : 1e-11 * parts_.image_weight * level.counted_measures.front();
-  level.image = std::make_shared<ImageTerm<Dim>>(level.grid, std::move(metric), affine_);
+  level.image = std::make_shared<ImageTerm<Dim>>(level.grid, std::move(metric), affine_, rows);
+}
+
+/// The rows of samples that are looked at: all of them at the finest level.
+template <int Dim>
+RowSubset RegistrationRun<Dim>::rows_of_level(std::size_t l) const {
+  const double fraction = l + 1 == levels_.size() ? 1.0 : parts_.schedule.sample_fraction;
+  return {levels_[l].grid->raster().num_rows(), fraction, parts_.schedule.seed + l};
 }
 
 template <int Dim>
@@ -290,9 +304,20 @@ std::shared_ptr<const Optimizer> RegistrationRun<Dim>::optimizer_of(std::size_t 
   } else {
     stopping.relative_decrease = 1e-10;  // iterations without images cost little
   }
-  GaussNewtonOptions options;
-  options.solver = solver_;
-  return std::make_shared<GaussNewton>(stopping, options);
+  if (parts_.optimizer_kind == OptimizerKind::kGaussNewton) {
+    GaussNewtonOptions options;
+    options.solver = solver_;
+    return std::make_shared<GaussNewton>(stopping, options);
+  }
+  // Steps of gradient methods vary in length and worth.
+  stopping.max_iterations *= kGradientIterations;
+  stopping.small_decreases = 2;
+  if (parts_.optimizer_kind == OptimizerKind::kSteepestDescent) {
+    stopping.relative_decrease *= 0.1;
+    stopping.small_decreases = 3;
+    stopping.step_length = 0;
+  }
+  return make_optimizer(parts_.optimizer_kind, stopping);
 }
 
 /// The first whole minimisation of a level. Of several starts the one is followed from which a few
@@ -433,7 +458,7 @@ double RegistrationRun<Dim>::determined_by(std::size_t l,
                                            const std::shared_ptr<Metric<Dim>>& metric,
                                            double weight, const Phi& phi) {
   const Level& level = levels_[l];
-  const auto term = std::make_shared<ImageTerm<Dim>>(level.grid, metric, affine_);
+  const auto term = std::make_shared<ImageTerm<Dim>>(level.grid, metric, affine_, rows_of_level(l));
   RegistrationObjective<Dim> image(pattern_, term, parts_.image_weight * weight * metric->unit(),
                                    {});
   return determined_parameters(image, *objective(level), phi, *null_space_, *solver_);

@@ -43,6 +43,7 @@ class RegistrationRun {
   void make_constraints();
   void make_levels();
   void choose_samples(std::size_t level, const std::vector<Phi>& starts);
+  RowSubset rows_of_level(std::size_t level) const;
   void collect_energies();
   void make_solver();
   std::vector<std::size_t> similar_channels() const;

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "Optimizers/GaussNewton.h"
+#include "Optimizers/Lbfgs.h"
+#include "Optimizers/NonlinearConjugateGradient.h"
 #include "Optimizers/SteepestDescent.h"
 #include "Registration/Registration.h"
 #include "Testing/Registration/TestScenes.h"
@@ -91,7 +93,8 @@ TYPED_TEST(RegistrationLandmarks, AreExactAfterAnyStop) {
   for (const auto kind : kNullSpaces) {
     for (const auto& stop : kStops) {
       const std::shared_ptr<const Optimizer> optimizers[] = {
-          std::make_shared<GaussNewton>(stop.options),
+          std::make_shared<GaussNewton>(stop.options), std::make_shared<Lbfgs>(stop.options),
+          std::make_shared<NonlinearConjugateGradient>(stop.options),
           std::make_shared<SteepestDescent>(stop.options)};
       for (const auto& optimizer : optimizers) {
         Registration<Dim> registration(fixed, moving);

@@ -240,9 +240,9 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   const char* status = !outcome.converged ? "not_converged" : (gate_failed ? "gate_failed" : "ok");
   const Json figures = figures_json(options, input, outcome, evaluation, certificate);
   const Json result = report.result(status, figures);
-  output.write_text(
-      "report.html",
-      register_report<Dim>({options, input, outcome, evaluation, result, config}, stacks));
+  output.write_text("report.html", register_report<Dim>({options, input, outcome, evaluation,
+                                                         certificate, result, config},
+                                                        stacks));
   report.end_stage("writing");
   const std::string json = report.to_json(status, figures);
   output.finish(json);

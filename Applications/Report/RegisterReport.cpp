@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
 
 namespace crease {
@@ -78,17 +79,36 @@ Statement match_statement(const RegisterStory<Dim>& story) {
   return {ReportMood::kGood, text + "."};
 }
 
+/// What the samples show, and what is certified between them.
 template <int Dim>
-Statement fold_statement(const Evaluation<Dim>& evaluation) {
-  const auto& jacobian = evaluation.jacobian;
+std::vector<Statement> fold_statements(const RegisterStory<Dim>& story) {
+  const auto& jacobian = story.evaluation.jacobian;
+  std::vector<Statement> statements;
   if (jacobian.folded > 0) {
-    std::string text = folding_text(jacobian, evaluation.samples) + ".";
+    std::string text = folding_text(jacobian, story.evaluation.samples) + ".";
     text.front() = 'T';  // "the map folds ..."
-    return {ReportMood::kBad, text};
+    statements.push_back({ReportMood::kBad, text});
+  } else {
+    statements.push_back({ReportMood::kGood,
+                          fmt::format("No folds at {} samples: determinants from {} to {}.",
+                                      count_text(story.evaluation.samples),
+                                      short_text(jacobian.minimum), short_text(jacobian.maximum))});
   }
-  return {ReportMood::kGood,
-          fmt::format("No folds at {} samples: determinants from {} to {}.", evaluation.samples,
-                      short_text(jacobian.minimum), short_text(jacobian.maximum))};
+  const std::string text = "Invertible: " + certificate_text(story.certificate) + ".";
+  switch (story.certificate.verdict) {
+    case Invertibility::kCertified:
+      statements.push_back({ReportMood::kGood, text});
+      break;
+    case Invertibility::kFolded:
+      statements.push_back({ReportMood::kBad, text});
+      break;
+    case Invertibility::kUndecided:
+      statements.push_back({ReportMood::kCaution, text});
+      break;
+    case Invertibility::kNotCertifiable:
+      break;
+  }
+  return statements;
 }
 
 Statement landmark_statement(const Json& landmarks, bool exact) {
@@ -106,7 +126,7 @@ Statement landmark_statement(const Json& landmarks, bool exact) {
 
 template <int Dim>
 std::vector<ReportHead::Figure> key_figures(const RegisterStory<Dim>& story) {
-  const auto& [options, input, outcome, evaluation, result, config] = story;
+  const auto& [options, input, outcome, evaluation, certificate, result, config] = story;
   std::string size = count_text(outcome.free_parameters) + " parameters";
   if (outcome.domain) {
     size = fmt::format("{} triangles, {}", outcome.domain->mesh.mesh.simplices.size(), size);
@@ -154,7 +174,8 @@ ReportHead head_of(const RegisterStory<Dim>& story) {
   head.title = file_name(story.options.moving.front()) + " registered to " +
                file_name(story.options.fixed.front());
   head.status = status_of(story.result.at("status"));
-  head.verdict = {match_statement(story), fold_statement(story.evaluation)};
+  head.verdict = {match_statement(story)};
+  for (const auto& statement : fold_statements(story)) head.verdict.push_back(statement);
   if (!story.input.landmarks.empty()) {
     head.verdict.push_back(
         landmark_statement(story.result.at("landmarks"), story.options.landmarks_mode == "exact"));
@@ -218,6 +239,21 @@ ReportPlot energy_plot(const std::vector<LevelReport>& levels,
   return plot;
 }
 
+void add_refinement(const std::vector<RefinementRound>& rounds, HtmlReport& report) {
+  if (rounds.empty()) return;
+  ReportTable table{
+      .title = "Division of patches where the images asked for it",
+      .columns = {"round", "control points", "places", "expected gain", "cost before", "cost", ""},
+      .numbers = {1, 2, 3, 4, 5}};
+  for (const RefinementRound& round : rounds) {
+    table.rows.push_back({std::to_string(table.rows.size() + 1), count_text(round.control_points),
+                          count_text(round.places), short_text(round.expected_gain),
+                          short_text(round.cost_before), short_text(round.cost),
+                          round.kept ? "kept" : "not kept: the cost did not fall"});
+  }
+  report.add_table(table);
+}
+
 template <int Dim>
 void add_optimisation(const RegisterStory<Dim>& story, HtmlReport& report) {
   const auto& outcome = story.outcome;
@@ -243,6 +279,15 @@ void add_optimisation(const RegisterStory<Dim>& story, HtmlReport& report) {
          level.stopped_because.empty() ? outcome.stopped_because : level.stopped_because});
   }
   report.add_table(levels);
+  add_refinement(outcome.refinement, report);
+  if (const auto& unfolding = outcome.unfolding) {
+    report.add_text(fmt::format(
+        "The map folded (metric {}). It was made invertible in {} minimisations with an energy "
+        "against "
+        "folds, weight {} in the last; {:.3g} % of the way to the folded map were kept.",
+        short_text(unfolding->folded_metric), unfolding->rounds, short_text(unfolding->weight),
+        100 * unfolding->share));
+  }
   ReportTable energies{.title = "Energies at the end",
                        .columns = {"term", "energy", "weight"},
                        .numbers = {1, 2},

@@ -6,6 +6,7 @@
 #include "Applications/RegisterRun.h"
 #include "Applications/Report/RegisterStacks.h"
 #include "Registration/Evaluation.h"
+#include "Transforms/InvertibilityCertificate.h"
 
 namespace crease {
 
@@ -16,6 +17,7 @@ struct RegisterStory {
   const RegisterInput<Dim>& input;
   const RegisterOutcome<Dim>& outcome;
   const Evaluation<Dim>& evaluation;
+  const InvertibilityCertificate<Dim>& certificate;
   const nlohmann::ordered_json& result;  ///< what result.json holds
   const std::string& config;             ///< what config.toml holds
 };

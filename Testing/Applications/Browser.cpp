@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPatience = std::chrono::seconds(30);
+constexpr auto kPatience = std::chrono::seconds(60);  // on a machine with much else to do
 constexpr int kBrowserReads = 3, kBrowserWrites = 4;  // file descriptors, as Chromium expects them
 
 /// A pipe whose ends are out of the way of the browser's descriptors.

@@ -12,7 +12,7 @@
 namespace crease::testing {
 
 /// A headless Chromium with one page, driven by the DevTools protocol over a pipe: no display, no network,
-/// a profile of its own that goes with it. Every call answers within seconds or throws.
+/// a profile of its own that goes with it. Every call answers within a minute or throws.
 class Browser {
  public:
   /// The browser's program, empty where none is installed.

@@ -504,7 +504,14 @@ void RegistrationRun<Dim>::make_invertible(const Phi& start, Phi& phi) {
        .without_images = [&](const auto& folding, double weight,
                              const Phi& from) { return minimise(false, folding, weight, from); },
        .value =
-           [&](const Phi& at) { return objective(levels_[l])->evaluate(at, nullptr, nullptr); }});
+           [&](const Phi& at, Phi* curvature) {
+             Eigen::SparseMatrix<double> hessian;
+             const double value =
+                 objective(levels_[l])
+                     ->evaluate(at, nullptr, curvature != nullptr ? &hessian : nullptr);
+             if (curvature != nullptr) *curvature = hessian.diagonal();
+             return value;
+           }});
   UnfoldingReport report;
   if (parts_.has_images()) {
     report.folded_metric =

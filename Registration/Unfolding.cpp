@@ -9,12 +9,17 @@ namespace {
 constexpr double kThresholdRise = 1.5;  // of det below which it costs, where that is not enough ...
 constexpr double kMostThreshold = 0.6;  // ... up to this
 constexpr double kWatched = 0.25;       // patches whose bound is below it are watched
-constexpr double kFirstShare = 0.1;     // of the cost that the energy against folds has at first
-constexpr double kLeastCost = 1e-3;     // of the smoothest map's, that this refers to at least
-constexpr double kLeastFolds = 1e-3;    // per measure of what is watched, that this refers to
-constexpr double kRise = 10;            // of its weight per round
-constexpr int kMostRounds = 8;          // of rising weights
-constexpr int kMostRetreatTests = 8;    // of the way back, by halving
+constexpr double kFirstShare = 0.1;  // of the curvature that the energy against folds adds at first
+constexpr double kRise = 10;         // of its weight per round
+constexpr int kMostRounds = 8;       // of rising weights
+constexpr int kMostIdleRounds = 3;
+constexpr double kProgress = 0.1;     // of the least determinant in a round that is not idle
+constexpr int kMostRetreatTests = 8;  // of the way back, by halving
+
+template <int Dim>
+Eigen::Map<const ControlPoints<Dim>> points_of(const Eigen::VectorXd& phi) {
+  return {phi.data(), Dim, phi.size() / Dim};
+}
 
 }  // namespace
 
@@ -48,27 +53,46 @@ void Unfolding<Dim>::watch(const InvertibilityCertificate<Dim>& certificate) {
                                        }});
 }
 
-/// Minimises with a rising weight until the certificate is there.
+/// Such that the energy adds a share of the curvature that the cost has on the control points it holds.
 template <int Dim>
-void Unfolding<Dim>::press(const Minimise& minimise, double least_cost,
-                           UnfoldingResult<Dim>& result) {
-  const auto control_points = [&](const Phi& phi) {
-    return Eigen::Map<const ControlPoints<Dim>>(phi.data(), Dim, phi.size() / Dim);
-  };
+double Unfolding<Dim>::first_weight(const Phi& phi) const {
+  Eigen::VectorXd of_cost;
+  costs_.value(phi, &of_cost);
+  BlockHessian<Dim> hessian(basis_->pattern());
+  folding_->evaluate(points_of<Dim>(phi), 1, nullptr, &hessian);
+  const Eigen::VectorXd of_folding = hessian.to_sparse().diagonal();
+  double cost = 0, folding = 0;
+  for (Eigen::Index i = 0; i < of_folding.size(); ++i) {
+    if (!(of_folding[i] > 0)) continue;
+    cost += of_cost[i];
+    folding += of_folding[i];
+  }
+  return cost > 0 ? kFirstShare * cost / folding : 1.0;
+}
+
+/// Minimises with a rising weight until the certificate is there, or three rounds in a row bring it no nearer.
+template <int Dim>
+void Unfolding<Dim>::press(const Minimise& minimise, UnfoldingResult<Dim>& result) {
   watch(result.certificate);
-  const double folds = folding_->evaluate(control_points(result.phi), 1, nullptr, nullptr);
-  const double cost = std::max(costs_.value(result.phi), least_cost);
-  const double unit = std::max(folds, kLeastFolds * folding_->measure());
-  double weight = cost > 0 ? kFirstShare * cost / unit : 1.0;
-  for (int round = 0; round < kMostRounds && !result.certificate.certified(); ++round) {
+  double weight = first_weight(result.phi);
+  int fewest = result.certificate.num_failing, idle = 0;
+  double lowest = folding_->least_determinant(points_of<Dim>(result.phi));
+  for (int round = 0; round < kMostRounds && idle < kMostIdleRounds; ++round) {
     result.phi = minimise(folding_, weight, result.phi);
     result.certificate = certify(result.phi);
     result.folding_weight = weight;
     ++result.rounds;
+    if (result.certificate.certified()) return;
     watch(result.certificate);
     weight *= kRise;
+    const double least = folding_->least_determinant(points_of<Dim>(result.phi));
+    const bool nearer =
+        result.certificate.num_failing < fewest || least > lowest + kProgress * std::abs(lowest);
+    idle = nearer ? 0 : idle + 1;
+    fewest = std::min(fewest, result.certificate.num_failing);
+    lowest = std::max(lowest, least);
+    if (least <= 0) continue;
     // Folds between the energy's points, at the border above all, give way when the points stay farther away.
-    if (folding_->least_determinant(control_points(result.phi)) <= 0) continue;
     threshold_ = std::min(kThresholdRise * threshold_, kMostThreshold);
     folding_ = std::make_shared<const FoldingEnergy<Dim>>(folding_->with_threshold(threshold_));
   }
@@ -94,7 +118,9 @@ void Unfolding<Dim>::improve(UnfoldingResult<Dim>& result) {
   const Phi better = costs_.with_images(folding_, result.folding_weight, result.phi);
   const InvertibilityCertificate<Dim> certificate = certify(better);
   ++result.rounds;
-  if (!certificate.certified() || costs_.value(better) >= costs_.value(result.phi)) return;
+  if (!certificate.certified() ||
+      costs_.value(better, nullptr) >= costs_.value(result.phi, nullptr))
+    return;
   result.phi = better;
   result.certificate = certificate;
 }
@@ -108,16 +134,20 @@ UnfoldingResult<Dim> Unfolding<Dim>::run(const Phi& phi, const Phi& smoothest) {
     return r.certificate.certified() || r.certificate.verdict == Invertibility::kNotCertifiable;
   };
   if (done(result)) return result;
-  const double least_cost = kLeastCost * costs_.value(smoothest);
-  press(costs_.with_images, least_cost, result);
+  press(costs_.with_images, result);
   if (done(result)) return result;
   UnfoldingResult<Dim> base;
   base.phi = smoothest;
   base.certificate = certify(smoothest);
-  if (!base.certificate.certified()) press(costs_.without_images, least_cost, base);
+  if (!base.certificate.certified()) press(costs_.without_images, base);
   result.rounds += base.rounds;
-  if (base.certificate.certified()) retreat(base.phi, result);
-  if (result.certificate.certified()) improve(result);
+  if (base.certificate.certified()) {
+    retreat(base.phi, result);
+    improve(result);
+  } else if (certify(phi).num_failing < result.certificate.num_failing) {
+    result.phi = phi;
+    result.certificate = certify(phi);
+  }
   return result;
 }
 

@@ -36,8 +36,9 @@ class Unfolding {
                                      double weight, const Phi& start)>;
   struct Costs {
     Minimise with_images;
-    Minimise without_images;                  ///< the energies alone
-    std::function<double(const Phi&)> value;  ///< with images, without the energy against folds
+    Minimise without_images;  ///< the energies alone
+    /// With images, without the energy against folds; fills the diagonal of the Hessian if not null.
+    std::function<double(const Phi&, Eigen::VectorXd* curvature)> value;
   };
 
   Unfolding(std::shared_ptr<const SplineBasis<Dim>> basis, const AffineMap<Dim>& affine,
@@ -50,7 +51,8 @@ class Unfolding {
  private:
   InvertibilityCertificate<Dim> certify(const Phi& phi) const;
   void watch(const InvertibilityCertificate<Dim>& certificate);
-  void press(const Minimise& minimise, double least_cost, UnfoldingResult<Dim>& result);
+  double first_weight(const Phi& phi) const;
+  void press(const Minimise& minimise, UnfoldingResult<Dim>& result);
   void retreat(const Phi& certified, UnfoldingResult<Dim>& result) const;
   void improve(UnfoldingResult<Dim>& result);
 

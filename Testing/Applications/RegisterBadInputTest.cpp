@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "Core/Error.h"
 #include "Images/MakeInterpolator.h"
 #include "Images/Resample.h"
 #include "Testing/Applications/RegisterFixture.h"
@@ -228,22 +229,55 @@ TEST_F(RegisterBadInput, IdenticalImagesAreNoError) {
   EXPECT_LT(largest, 1e-6);
 }
 
+// Nine landmarks that are mirrored determine the nine control points of one biquadratic span.
 TEST_F(RegisterBadInput, FoldingIsAWarningOrAFailedGate) {
-  const std::string file = folder.write("swap.csv",
-                                        "fixed_x,fixed_y,moving_x,moving_y\n"
-                                        "26,32,40,32\n38,32,24,32\n2,2,2,2\n60,60,60,60\n");
-  const std::vector<std::string> extra = {"--metric", "none", "--landmarks", file};
+  std::string pairs = "fixed_x,fixed_y,moving_x,moving_y\n";
+  for (int x : {16, 32, 48}) {
+    for (int y : {16, 32, 48}) pairs += message(x, ",", y, ",", 64 - x, ",", y, "\n");
+  }
+  const std::string file = folder.write("mirror.csv", pairs);
+  const std::vector<std::string> extra = {"--metric",    "none",    "--landmarks", file,
+                                          "--transform", "bspline", "--degree",    "2",
+                                          "--gamma",     "0.1",     "--mesh-size", "64"};
   ASSERT_EQ(run(extra).code, 0);
   auto result = testing::read_result(output());
   EXPECT_GT(result["jacobian"]["folded_fraction"].get<double>(), 0);
   EXPECT_LE(result["jacobian"]["min"].get<double>(), 0);
+  EXPECT_FALSE(result["jacobian"]["certified_positive"].get<bool>());
   EXPECT_THAT(result["warnings"].dump(), AllOf(HasSubstr("folds at"), HasSubstr("near (")));
   auto gate = extra;
   gate.emplace_back("--require-invertible");
   EXPECT_EQ(run(gate).code, 1);
   result = testing::read_result(output());
   EXPECT_EQ(result["status"], "gate_failed");
+  EXPECT_THAT(result["warnings"].dump(), HasSubstr("no invertible map was found"));
+  EXPECT_EQ(result["jacobian"]["certificate"]["verdict"], "folded");
+  EXPECT_LE(result["jacobian"]["certificate"]["failing_region"]["determinant"], 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/displacement.mha"));
+}
+
+// Landmarks that come close fold the smoothest map between them.
+TEST_F(RegisterBadInput, FoldingGivesWayWhereAnInvertibleMapIsAskedFor) {
+  const std::string file = folder.write("squeeze.csv",
+                                        "fixed_x,fixed_y,moving_x,moving_y\n"
+                                        "24,32,31.7,32\n40,32,32.3,32\n13,32,13,32\n51,32,51,32\n");
+  std::vector<std::string> extra = {"--metric",    "none",    "--landmarks", file,
+                                    "--transform", "bspline", "--mesh-size", "8"};
+  ASSERT_EQ(run(extra).code, 0);
+  EXPECT_FALSE(testing::read_result(output())["jacobian"]["certified_positive"].get<bool>());
+  extra.emplace_back("--require-invertible");
+  const auto done = run(extra);
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("certified everywhere in the domain"));
+  const auto result = testing::read_result(output());
+  EXPECT_EQ(result["status"], "ok");
+  EXPECT_TRUE(result["jacobian"]["certified_positive"].get<bool>());
+  EXPECT_GT(result["jacobian"]["certificate"]["lower_bound"], 0);
+  EXPECT_TRUE(result["jacobian"]["certificate"]["failing_region"].is_null());
+  EXPECT_GT(result["unfolding"]["rounds"], 0);
+  EXPECT_LT(result["landmarks"]["max_error_mm"], 1e-9);
+  const auto info = testing::run_crease({"info", (folder / "out/transform.json").string()});
+  EXPECT_THAT(info.out, HasSubstr("certified everywhere"));
 }
 
 }  // namespace

@@ -60,9 +60,8 @@ FoldingEnergy<Dim>::FoldingEnergy(const SplineBasis<Dim>& basis, const AffineMap
       num_control_points_(basis.num_control_points()) {
   check_threshold(threshold_);
   if (!affine.finite()) throw InvalidInput("FoldingEnergy: the affine part is not finite.");
-  const int degree = options.quadrature_degree >= 0
-                         ? options.quadrature_degree
-                         : std::max(2, basis.product_degree(Dim == 2 ? 4 : 3, 2));
+  const int degree = options.quadrature_degree >= 0 ? options.quadrature_degree
+                                                    : std::max(2, basis.product_degree(2, 2));
   visit_quadrature<Dim>(basis, degree, 1, options.wanted, [&](auto& elements) {
     for (auto& element : elements) {
       measure_ += element.weights.sum();

@@ -11,8 +11,8 @@ namespace crease {
 /// Where and how folding is punished.
 struct FoldingOptions {
   double threshold = 0.1;  ///< delta: det F above it costs nothing
-  /// Degree of the quadrature; negative: as many points as it takes to see narrow folds, for cubics 7 per axis
-  /// of a knot span (in space 5), and 6 per triangle of a cell of knot lines.
+  /// Degree of the quadrature; negative: enough to see narrow folds, for cubics 4 points per axis of a knot span
+  /// and 3 per cell of knot lines.
   int quadrature_degree = -1;
   /// Patches that are watched; null: all.
   std::function<bool(int region, int patch)> wanted;

@@ -152,8 +152,7 @@ OptimizerResult NelderMead::minimize(ObjectiveFunction& function, const Eigen::V
   options.size_tolerance = simplex_.last_size;
   options.max_evaluations = simplex_.max_evaluations;
   options.after_iteration = [&](const Eigen::VectorXd& u, double value) {
-    if (value < run.current().value &&
-        run.evaluate_trial(place(u)).value < run.current().value) {
+    if (value < run.current().value && run.evaluate_trial(place(u)).value < run.current().value) {
       run.accept_trial();
     }
     return !run.out_of_time();

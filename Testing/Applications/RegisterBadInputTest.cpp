@@ -191,7 +191,7 @@ TEST_F(RegisterBadInput, StartThatIsASpline) {
   const std::string spline = (folder / "spline.json").string();
   std::filesystem::rename(folder / "out/transform.json", spline);
   std::filesystem::remove_all(folder / "out");
-  expect_refused(run({"--init", spline}), 3, {"spline.json", "affine or rigid"});
+  expect_refused(run({"--init", spline}), 3, {"spline.json", "rigid or affine"});
 }
 
 // --init FILE is where a search starts, too.

@@ -5,10 +5,12 @@
 #include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Transforms/Domains/DomainMesh.h"
+#include "Transforms/Domains/MeshEdges.h"
 #include "Transforms/Splines/KnotBorder.h"
 #include "Transforms/Splines/KnotCellRule.h"
 #include "Transforms/Splines/KnotLocator.h"
 #include "Transforms/Splines/PowellSabinGrid.h"
+#include "Transforms/Splines/PowellSabinPieces.h"
 #include "Transforms/Splines/SimplexSpline.h"
 
 namespace crease {
@@ -194,6 +196,16 @@ std::vector<std::pair<int, int>> PowellSabinBasis::couplings() const {
 
 std::unique_ptr<BoundGrid<2>> PowellSabinBasis::bind(const Raster<2>& raster) const {
   return std::make_unique<PowellSabinGrid>(*this, raster);
+}
+
+double PowellSabinBasis::edge_length(const Point<2>& x) const {
+  const int simplex = find_simplex(x);
+  return simplex < 0 ? mean_edge_length_ : crease::mean_edge_length(net_.mesh, simplex);
+}
+
+std::unique_ptr<DeterminantPieces<2>> PowellSabinBasis::determinant_pieces(
+    const ControlPoints<2>& phi, const Matrix<2>& linear) const {
+  return std::make_unique<PowellSabinPieces>(patches_, phi, linear);
 }
 
 }  // namespace crease

@@ -53,6 +53,7 @@ class PowellSabinBasis final : public SplineBasis<2> {
   Box<2> bounds() const override;
   double measure() const override { return measure_; }
   double mean_edge_length() const override { return mean_edge_length_; }
+  double edge_length(const Point<2>& x) const override;
   BasisValues<2> evaluate(const Point<2>& x, int derivatives = 0) const override;
   /// The corners of the vertices' triangles.
   ControlPoints<2> greville_points() const override;
@@ -61,6 +62,8 @@ class PowellSabinBasis final : public SplineBasis<2> {
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const override;
   std::vector<std::pair<int, int>> couplings() const override;
+  std::unique_ptr<DeterminantPieces<2>> determinant_pieces(const ControlPoints<2>& phi,
+                                                           const Matrix<2>& linear) const override;
   std::unique_ptr<BoundGrid<2>> bind(const Raster<2>& raster) const override;
 
  private:

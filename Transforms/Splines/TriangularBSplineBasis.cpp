@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "Core/Error.h"
 #include "Transforms/BoundGrid.h"
 #include "Transforms/Domains/KnotNetCheck.h"
+#include "Transforms/Domains/MeshEdges.h"
 #include "Transforms/Splines/KnotBorder.h"
 #include "Transforms/Splines/KnotLocator.h"
 #include "Transforms/Splines/SimplexSplineGraph.h"
@@ -32,19 +32,6 @@ KnotNet<Dim> checked(KnotNet<Dim> net) {
         message("knot net: vertex ", v - used.begin(), " belongs to no simplex; leave it out."));
   }
   return net;
-}
-
-template <int Dim>
-double mean_edge(const SimplexMesh<Dim>& mesh) {
-  std::set<std::pair<int, int>> edges;
-  for (const auto& simplex : mesh.simplices) {
-    for (int j = 0; j <= Dim; ++j) {
-      for (int k = 0; k < j; ++k) edges.insert(std::minmax(simplex[j], simplex[k]));
-    }
-  }
-  double sum = 0.0;
-  for (const auto& [a, b] : edges) sum += (mesh.vertices[a] - mesh.vertices[b]).norm();
-  return sum / static_cast<double>(edges.size());
 }
 
 // Functions in ascending order of their control points; jet(function, quantity) gives their values,
@@ -128,7 +115,7 @@ TriangularBSplineBasis<Dim>::TriangularBSplineBasis(KnotNet<Dim> net)
       control_points_(net_.mesh, net_.degree),
       border_(border_facets<Dim>(net_.mesh)),
       tie_(kKnotTie * mesh_scale(net_.mesh)),
-      mean_edge_length_(mean_edge(net_.mesh)) {
+      mean_edge_length_(crease::mean_edge_length(net_.mesh)) {
   locator_ = std::make_unique<KnotLocator<Dim>>(net_.mesh, tie_);
   const int count = static_cast<int>(net_.mesh.simplices.size());
   for (int s = 0; s < count; ++s) {
@@ -175,17 +162,7 @@ Box<Dim> TriangularBSplineBasis<Dim>::bounds() const {
 template <int Dim>
 double TriangularBSplineBasis<Dim>::edge_length(const Point<Dim>& x) const {
   const int simplex = find_simplex(x);
-  if (simplex < 0) return mean_edge_length_;
-  const auto& corners = net_.mesh.simplices[static_cast<std::size_t>(simplex)];
-  double sum = 0;
-  for (int a = 0; a <= Dim; ++a) {
-    for (int b = 0; b < a; ++b) {
-      sum += (net_.mesh.vertices[static_cast<std::size_t>(corners[a])] -
-              net_.mesh.vertices[static_cast<std::size_t>(corners[b])])
-                 .norm();
-    }
-  }
-  return sum / (Dim * (Dim + 1) / 2);
+  return simplex < 0 ? mean_edge_length_ : crease::mean_edge_length(net_.mesh, simplex);
 }
 
 template <int Dim>

@@ -20,7 +20,10 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 
 std::string range_text(const Option& option) {
   const bool below = std::isfinite(option.minimum), above = std::isfinite(option.maximum);
-  if (below && above) return message("from ", option.minimum, " to ", option.maximum);
+  if (below && above) {
+    return message(option.open_minimum ? "above " : "from ", option.minimum,
+                   option.open_minimum ? " and up to " : " to ", option.maximum);
+  }
   if (below) return message(option.open_minimum ? "above " : "of at least ", option.minimum);
   if (above) return message("up to ", option.maximum);
   return "";

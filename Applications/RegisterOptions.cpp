@@ -44,8 +44,14 @@ void check_transform(const RegisterOptions& o) {
     refuse_if(o.init_transform.has_value(), "init-transform", o, needs);
     refuse_if(o.landmarks_mode != "exact", "landmarks-mode", o, needs);
     refuse_if(o.landmarks_conflict != "error", "landmarks-conflict", o, needs);
-    refuse_if(o.optimizer != "gauss-newton", "optimizer", o, needs);
+    refuse_if(o.sample_fraction != 1, "sample-fraction", o, needs);
     refuse_if(o.null_space != "elimination", "null-space", o, needs);
+  }
+  if (o.is_spline() && o.optimizer == "nelder-mead") {
+    throw UsageError(
+        message("--optimizer nelder-mead is for few unknowns: --transform rigid or "
+                "affine. For --transform ",
+                o.transform, " take gauss-newton or lbfgs."));
   }
   if (o.smoothness && *o.smoothness > o.spline_degree() - 1) {
     throw UsageError(message("--smoothness ", *o.smoothness, " needs --degree ", *o.smoothness + 1,
@@ -325,10 +331,19 @@ std::vector<Option> solver_options(RegisterOptions& o) {
        .help = "Divide patches where the images ask for it, up to N times (0)",
        .minimum = 0,
        .maximum = 8},
+      {.name = "sample-fraction",
+       .target = &o.sample_fraction,
+       .placeholder = "F",
+       .help =
+           "Share of the rows of pixels that all levels but the finest look at, chosen by --seed",
+       .minimum = 0,
+       .maximum = 1,
+       .open_minimum = true},
       {.name = "optimizer",
        .target = &o.optimizer,
-       .help = "How the minimum is sought",
-       .choices = {"gauss-newton", "steepest-descent"}},
+       .help = "How the minimum is sought; nelder-mead for rigid and affine maps only",
+       .choices = {"gauss-newton", "lbfgs", "conjugate-gradient", "steepest-descent",
+                   "nelder-mead"}},
       {.name = "null-space",
        .target = &o.null_space,
        .help = "How exact landmarks are eliminated",

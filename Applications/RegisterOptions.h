@@ -35,6 +35,7 @@ struct RegisterOptions {
   std::string null_space = "elimination";
   int levels = 3;
   int adapt = 0;
+  double sample_fraction = 1;
   std::optional<std::string> init;
   std::optional<std::string> init_transform;
   std::vector<double> spacing;

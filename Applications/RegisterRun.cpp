@@ -6,7 +6,6 @@
 #include "Applications/RegisterBasis.h"
 #include "Images/IntensityRange.h"
 #include "Images/Moments.h"
-#include "Optimizers/SteepestDescent.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/LandmarkFits.h"
 #include "Transforms/RigidTransform.h"
@@ -24,6 +23,13 @@ AlignmentSearch search_of(const std::string& name) {
   return name == "affine" ? AlignmentSearch::kAffine : AlignmentSearch::kNone;
 }
 
+OptimizerKind optimizer_of(const std::string& name) {
+  if (name == "lbfgs") return OptimizerKind::kLbfgs;
+  if (name == "conjugate-gradient") return OptimizerKind::kConjugateGradient;
+  if (name == "steepest-descent") return OptimizerKind::kSteepestDescent;
+  return name == "nelder-mead" ? OptimizerKind::kNelderMead : OptimizerKind::kGaussNewton;
+}
+
 /// How A is found: what was asked for; without --init by landmarks where there are enough.
 template <int Dim>
 AlignmentOptions alignment_options(const RegisterOptions& options, int num_landmarks) {
@@ -37,6 +43,7 @@ AlignmentOptions alignment_options(const RegisterOptions& options, int num_landm
   if (start == "centres") alignment.start = AlignmentStart::kCentres;
   if (start == "identity") alignment.start = AlignmentStart::kIdentity;
   if (!options.has_metric()) alignment.search = AlignmentSearch::kNone;
+  alignment.optimizer = optimizer_of(options.optimizer);
   return alignment;
 }
 
@@ -170,15 +177,14 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   if (!input.landmarks.empty()) {
     registration.landmarks(input.landmarks, landmark_options(options));
   }
-  if (options.optimizer == "steepest-descent") {
-    registration.optimizer(std::make_shared<SteepestDescent>(
-        OptimizerOptions{.relative_decrease = 1e-4, .max_iterations = 1000}));
-  }
+  registration.optimizer(optimizer_of(options.optimizer));
   registration.null_space(null_space_of(options.null_space));
   Schedule schedule;
   schedule.levels = options.levels;
   schedule.adapt_weights = !options.gamma;
   schedule.require_invertible = options.require_invertible;
+  schedule.sample_fraction = options.sample_fraction;
+  schedule.seed = static_cast<std::uint64_t>(options.run.seed);
   registration.schedule(schedule);
   return registration;
 }

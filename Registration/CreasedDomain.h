@@ -40,7 +40,7 @@ struct CreasedDomainOptions {
   /// near lines. For creases a pixel will do: half of it costs a third more triangles.
   double line_tolerance = 0;
   int num_triangles = 0;             ///< > 0: about as many, whatever the edge lengths
-  std::vector<FineDisc> fine_discs;  ///< finer than the other lengths ask for
+  std::vector<FineDisc> fine_discs = {};  ///< finer than the other lengths ask for
   /// Whether a rigidity energy will hold bodies rigid: their inner vertices then need no knots apart
   /// from themselves, which makes that energy cheap.
   bool rigid_bodies = true;

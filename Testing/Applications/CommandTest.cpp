@@ -37,7 +37,6 @@ TEST(Command, RefusesWhatBelongsToLaterVersions) {
   for (const auto& extra : std::vector<std::vector<std::string>>{{"--orientations", "exact"},
                                                                  {"--slide-labels", "l.mha"},
                                                                  {"--energy", "elastic"},
-                                                                 {"--optimizer", "lbfgs"},
                                                                  {"--transform", "tspline"},
                                                                  {"--transform", "nurbs"}}) {
     auto arguments = base;

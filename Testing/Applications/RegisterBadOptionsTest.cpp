@@ -34,6 +34,11 @@ TEST_F(RegisterBadOptions, OptionsOutOfRange) {
   refused({"--init", "landmarks"}, {"--init landmarks", "--landmarks FILE"});
   refused({"--init", "moment"}, {"--init", "did you mean moments?"});
   refused({"--transform", "affine", "--mesh-size", "9"}, {"--mesh-size", "affine"});
+  refused({"--optimizer", "nelder-mead"}, {"--optimizer nelder-mead", "rigid", "gauss-newton"});
+  refused({"--optimizer", "bfgs"}, {"--optimizer", "did you mean lbfgs?"});
+  refused({"--sample-fraction", "0"}, {"--sample-fraction", "above 0"});
+  refused({"--sample-fraction", "1.5"}, {"--sample-fraction", "1"});
+  refused({"--transform", "rigid", "--sample-fraction", "0.5"}, {"--sample-fraction", "rigid"});
   refused({"--transform", "bspline", "--triangles", "9"}, {"--triangles", "bspline"});
   refused({"--spacing", "1,1,1"}, {"--spacing"});
   refused({"--spacing", "2,2"}, {"--spacing", "tell their own"});

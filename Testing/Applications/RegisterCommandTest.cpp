@@ -102,13 +102,43 @@ TEST_F(RegisterCommand, MeetsExactLandmarksWithEveryNullSpaceAndOptimizer) {
     EXPECT_EQ(landmarks["count"], 3);
     EXPECT_LT(landmarks["max_error_mm"], 64e-9) << null_space;
   }
-  ASSERT_EQ(run({"--landmarks", file, "--optimizer", "steepest-descent", "--levels", "1"}).code, 0);
-  EXPECT_LT(read_result(output())["landmarks"]["max_error_mm"], 64e-9);
+  for (const char* optimizer : {"lbfgs", "conjugate-gradient", "steepest-descent"}) {
+    ASSERT_EQ(run({"--landmarks", file, "--optimizer", optimizer, "--levels", "1"}).code, 0);
+    EXPECT_LT(read_result(output())["landmarks"]["max_error_mm"], 64e-9) << optimizer;
+  }
   ASSERT_EQ(run({"--landmarks", file, "--landmarks-mode", "soft", "--landmarks-sigma", "0.1"}).code,
             0);
   const double soft = read_result(output())["landmarks"]["max_error_mm"];
   EXPECT_GT(soft, 1e-6);
   EXPECT_LT(soft, 1);
+}
+
+TEST_F(RegisterCommand, RefinesRigidAndAffineMapsByEveryOptimizer) {
+  for (const char* transform : {"rigid", "affine"}) {
+    std::vector<double> after;
+    for (const char* optimizer :
+         {"gauss-newton", "lbfgs", "conjugate-gradient", "steepest-descent", "nelder-mead"}) {
+      const auto metric =
+          registered({"--transform", transform, "--optimizer", optimizer})["metric"];
+      EXPECT_LT(metric["after"], metric["before"]) << optimizer;
+      after.push_back(metric["after"]);
+      EXPECT_NEAR(after.back(), after.front(), 0.01 * after.front()) << optimizer;
+    }
+  }
+}
+
+TEST_F(RegisterCommand, LooksAtAShareOfTheRowsOnCoarseLevels) {
+  const auto displacement = [&](const std::vector<std::string>& extra) {
+    EXPECT_EQ(run(extra).code, 0);
+    return read_text(folder / "out/displacement.mha");
+  };
+  const std::string all = displacement({});
+  const std::string some = displacement({"--sample-fraction", "0.4"});
+  EXPECT_NE(some, all);
+  EXPECT_EQ(displacement({"--sample-fraction", "0.4", "--threads", "1"}), some);
+  EXPECT_NE(displacement({"--sample-fraction", "0.4", "--seed", "2"}), some);
+  EXPECT_EQ(displacement({"--sample-fraction", "0.4", "--levels", "1"}),
+            displacement({"--levels", "1"}));
 }
 
 TEST_F(RegisterCommand, ConfigurationRepeatsItToTheByte) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <fstream>
 
 #include "Core/Error.h"
@@ -72,6 +75,76 @@ TEST_F(SurfaceMeshFile, ReadsWhatOtherProgramsWrite) {
   EXPECT_THAT(ply.faces, ElementsAre(ElementsAre(0, 1, 2)));
 }
 
+TEST_F(SurfaceMeshFile, ReadsBinaryPlyOfEitherOrderOfBytes) {
+  const std::string elements =
+      "element vertex 3\nproperty float x\nproperty double y\nproperty short z\n"
+      "property list uchar uchar flags\nelement face 1\nproperty uchar red\n"
+      "property list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n";
+  for (const bool big : {false, true}) {
+    std::string text =
+        std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + elements;
+    const auto put = [&](auto value) {
+      std::array<char, sizeof(value)> bytes;
+      std::memcpy(bytes.data(), &value, sizeof(value));
+      if (big) std::reverse(bytes.begin(), bytes.end());  // tests run on little-endian machines
+      text.append(bytes.begin(), bytes.end());
+    };
+    for (int v = 0; v < 3; ++v) {
+      put(0.5f * static_cast<float>(v));
+      put(0.1 * v);
+      put(static_cast<std::int16_t>(-v));
+      put(std::uint8_t{2});
+      put(std::uint8_t{7});
+      put(std::uint8_t{8});
+    }
+    put(std::uint8_t{255});
+    put(std::uint8_t{3});
+    for (const std::int32_t v : {2, 0, 1}) put(v);
+    put(std::int32_t{5});
+    const auto mesh = read_surface_mesh(write("b.ply", text));
+    ASSERT_EQ(mesh.vertices.size(), 3U);
+    EXPECT_EQ(mesh.vertices[2], Point<3>(1, 0.1 * 2, -2));
+    EXPECT_THAT(mesh.faces, ElementsAre(ElementsAre(2, 0, 1)));
+    expect_refused("b.ply", text.substr(0, text.size() - 1), "ends before its last element");
+    const std::size_t third = text.size() - 8;  // the face's last vertex number
+    text[third + (big ? 3 : 0)] = 9;
+    expect_refused("b.ply", text, "a face names vertex 9 (from 0)");
+  }
+}
+
+TEST_F(SurfaceMeshFile, StlCornersBecomeVertices) {
+  const SurfaceMesh mesh = {{{0.1, 1.0 / 3, 0}, {1, 0, 0}, {1, 1, 0.25}, {0, 1, 0}},
+                            {{0, 1, 2, 3}}};
+  write_surface_mesh(folder_ / "m.stl", mesh);
+  const SurfaceMesh read = read_surface_mesh(folder_ / "m.stl");
+  EXPECT_EQ(read.vertices, mesh.vertices);  // to the last bit: it is text
+  EXPECT_THAT(read.faces, ElementsAre(ElementsAre(0, 1, 2), ElementsAre(0, 2, 3)));
+
+  std::string binary = "solid, but binary" + std::string(63, ' ');
+  const auto put = [&](auto value) {
+    binary.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  put(std::uint32_t{3});
+  const std::vector<std::array<int, 3>> triangles = {{0, 1, 2}, {0, 2, 3}, {3, 3, 1}};
+  for (const auto& triangle : triangles) {
+    for (int k = 0; k < 3; ++k) put(0.0f);
+    for (const int v : triangle) {
+      for (const double c : mesh.vertices[v]) put(static_cast<float>(c));
+    }
+    put(std::uint16_t{0});
+  }
+  const SurfaceMesh from_binary = read_surface_mesh(write("b.stl", binary));
+  ASSERT_EQ(from_binary.vertices.size(), 4U);
+  EXPECT_EQ(from_binary.vertices[0], Point<3>(0.1f, 1.0f / 3, 0));
+  EXPECT_EQ(from_binary.faces, read.faces);  // without the triangle of two corners
+  expect_refused("b.stl", binary.substr(0, 200), "this one may be cut off");
+  expect_refused("t.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n",
+                 "ends before \"endfacet\"");
+  expect_refused("t.stl", "solid a\nfacet\nvertex 0 0 0\nendfacet\nendsolid\n",
+                 "line 4: a facet of 1 corners");
+  expect_refused("t.stl", "solid a\nvertex 0 0 0\n", "line 2: \"vertex\" instead of \"facet\"");
+}
+
 TEST_F(SurfaceMeshFile, SaysWhereAFileIsWrong) {
   expect_refused("a.obj", "v 0 0\n", "line 1: there is no word 4");
   expect_refused("a.obj", "v 0 0 zero\n", "line 1: \"zero\" is not a number");
@@ -82,12 +155,12 @@ TEST_F(SurfaceMeshFile, SaysWhereAFileIsWrong) {
   expect_refused("a.off", "OFF\n2 0 0\n0 0 0\n", "ends before its last vertex");
   expect_refused("a.off", "OFF\n-2 0 0\n", "line 2: a count of -2");
   expect_refused("a.off", "OFF\n1 1 0\n0 0 0\n2000000000 0 0\n", "line 4: a face of 2000000000");
-  expect_refused("a.ply", "ply\nformat binary_little_endian 1.0\nend_header\n",
+  expect_refused("a.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n",
                  "save the mesh as text");
   expect_refused("a.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
                  "no property y");
-  expect_refused("a.stl", "solid\n", ".obj, .off and .ply");
+  expect_refused("a.wrl", "#VRML\n", ".obj, .off, .ply and .stl");
   EXPECT_THAT([&] { read_surface_mesh(folder_ / "none.obj"); },
               ThrowsMessage<FileError>(HasSubstr("none.obj")));
   EXPECT_THAT([&] { write_surface_mesh(folder_ / "none/a.obj", {}); },

@@ -156,8 +156,9 @@ Point<Dim> InverseMap<Dim>::operator()(const Point<Dim>& y) const {
   if (n < 0) return unresolved<Dim>();
   const Point<Dim> start = grid_.row_start(n / grid_.size[0]) +
                            double(n % grid_.size[0]) * grid_.index_to_point().col(0);
-  const Point<Dim> x = newton(y, start);
-  return x.allFinite() ? x : fixed_point(y, start);
+  Point<Dim> x = newton(y, start);
+  if (!x.allFinite()) x = fixed_point(y, start);
+  return x.allFinite() ? x : fixed_point(y, y);
 }
 
 template <int Dim>

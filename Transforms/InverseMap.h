@@ -9,7 +9,8 @@
 namespace crease {
 
 /// Solves T(x) = y: damped Newton steps from the sample of a grid whose image lies nearest to y, steps no
-/// longer than a few cells; where Newton fails, the fixed point x <- x - (T(x) - y).
+/// longer than a few cells; where Newton fails, the fixed point x <- x - (T(x) - y), from there or from y:
+/// beyond a displacement field, where T is the identity, that is y itself.
 ///
 /// The grid should be fine enough that T is nearly affine in a cell. Building it maps every sample once.
 template <int Dim>

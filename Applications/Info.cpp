@@ -17,7 +17,10 @@
 #include "Geometry/SurfaceMeshFile.h"
 #include "Images/ImageFile.h"
 #include "Registration/Landmarks.h"
+#include "Registration/PointFile.h"
+#include "Transforms/AffineEquivalent.h"
 #include "Transforms/CompositeTransform.h"
+#include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/Domains/CsvTable.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 #include "Transforms/Domains/RegionOfInterest.h"
@@ -118,10 +121,37 @@ void describe_basis(const SplineBasis<Dim>& basis, Json& json, std::string& text
 }
 
 template <int Dim>
+void describe_field(const DisplacementFieldTransform<Dim>& field, Json& json, std::string& text) {
+  const Raster<Dim>& raster = field.raster();
+  const double largest = field.displacements().colwise().norm().maxCoeff();
+  json["size"] = raster.size;
+  json["spacing_mm"] = std::vector<double>(raster.spacing.begin(), raster.spacing.end());
+  json["largest_displacement_mm"] = largest;
+  text += fmt::format("  displacement field, {} samples, {} mm apart, up to {:.4g} mm\n",
+                      fmt::join(raster.size, " x "),
+                      numbers_text(raster.spacing.data(), Dim, " x "), largest);
+}
+
+/// Rows of the matrix, then the offset: y = M x + t.
+template <int Dim>
+void describe_affine(const AffineMap<Dim>& map, Json& json, std::string& text) {
+  json["matrix"] = Json::array();
+  for (int r = 0; r < Dim; ++r) {
+    const Vector<Dim> row = map.linear.row(r);
+    json["matrix"].push_back(std::vector<double>(row.begin(), row.end()));
+    text += fmt::format("  ({})  {:+.6g} mm\n", numbers_text(row.data(), Dim, "  "), map.offset[r]);
+  }
+  json["offset_mm"] = std::vector<double>(map.offset.begin(), map.offset.end());
+}
+
+template <int Dim>
 void describe_transform(const Transform<Dim>& transform, Json& json, std::string& text) {
   json["parameters"] = transform.num_parameters();
   if (const auto* spline = dynamic_cast<const SplineTransform<Dim>*>(&transform)) {
     describe_basis(spline->basis(), json, text);
+  }
+  if (const auto* field = dynamic_cast<const DisplacementFieldTransform<Dim>*>(&transform)) {
+    describe_field(*field, json, text);
   }
   if (const auto* chain = dynamic_cast<const CompositeTransform<Dim>*>(&transform)) {
     json["parts"] = Json::array();
@@ -131,6 +161,8 @@ void describe_transform(const Transform<Dim>& transform, Json& json, std::string
       describe_transform(chain->part(k), part, text);
       json["parts"].push_back(part);
     }
+  } else if (const auto affine = affine_equivalent(transform)) {
+    describe_affine(*affine, json, text);
   }
 }
 
@@ -139,9 +171,11 @@ FileInfo transform_info(const std::string& file) {
   FileInfo result;
   result.figures = {{"kind", "transform"},
                     {"type", info.type},
+                    {"format", info.format},
                     {"in_dimension", info.in_dim},
                     {"out_dimension", info.out_dim}};
-  result.text = fmt::format("{} transform, {}D to {}D\n", info.type, info.in_dim, info.out_dim);
+  result.text = fmt::format("{} transform, {}D to {}D ({})\n", info.type, info.in_dim, info.out_dim,
+                            info.format);
   if (info.in_dim != info.out_dim) return result;
   const auto describe = [&](const auto& transform) {
     describe_transform(transform, result.figures, result.text);
@@ -240,15 +274,9 @@ FileInfo points_info(const std::vector<Point<3>>& points, int dimension) {
   return result;
 }
 
-FileInfo point_table_info(const std::string& file) {
-  const CsvTable table(file);
-  const bool flat = !table.has_column("z");
-  std::vector<Point<3>> points;
-  for (int row = 0; row < table.num_rows(); ++row) {
-    points.emplace_back(table.number(row, "x"), table.number(row, "y"),
-                        flat ? 0 : table.number(row, "z"));
-  }
-  return points_info(points, flat ? 2 : 3);
+FileInfo point_file_info(const std::string& file) {
+  const auto points = read_point_file(file);
+  return points_info(points->points(), points->dimension());
 }
 
 /// A list of points, or curves.
@@ -257,7 +285,7 @@ FileInfo slicer_info(const std::string& file) {
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   const bool curves = has_ending(file, ".json") && text.find("\"Fiducial\"") == std::string::npos;
   if (curves) return feature_line_info(file);
-  return points_info(read_slicer_landmarks<3>(file, file).fixed, 3);
+  return point_file_info(file);
 }
 
 FileInfo table_info(const std::string& file) {
@@ -265,7 +293,7 @@ FileInfo table_info(const std::string& file) {
   if (has_csv_column(file, "fixed_x")) return landmark_info<2>(file);
   if (has_csv_column(file, "line")) return feature_line_info(file);
   if (has_csv_column(file, "ring")) return region_info(file);
-  if (has_csv_column(file, "x")) return point_table_info(file);
+  if (has_csv_column(file, "x")) return point_file_info(file);
   throw InvalidInput(
       message(file,
               ": the table has neither landmarks (fixed_x,fixed_y,...), nor feature "
@@ -307,6 +335,7 @@ FileInfo file_info(const std::string& file) {
   if (!std::filesystem::exists(file)) throw FileError(message(file, ": there is no such file."));
   if (has_ending(file, ".csv")) return table_info(file);
   if (has_ending(file, ".mrk.json") || has_ending(file, ".fcsv")) return slicer_info(file);
+  if (has_ending(file, ".vtk")) return point_file_info(file);
   if (is_transform_file(file)) return transform_info(file);
   if (is_surface_mesh_file(file)) return mesh_info(file);
   return image_info(file);
@@ -327,8 +356,8 @@ ExitCode run(const InfoCommand& command) {
 }
 
 constexpr const char* kDetails =
-    R"(Understands images, transforms, landmarks, feature lines, regions of interest, points and meshes
-(.obj, .off, .ply).
+    R"(Understands images, transforms (of crease, and .tfm, .txt, .h5, .hdf5 and .mat of ITK and ANTs),
+landmarks, feature lines, regions of interest, points (.csv, .fcsv, .mrk.json, .vtk) and meshes (.obj, .off, .ply, .stl).
 
 Example:
   crease info thorax.nii.gz)";

@@ -9,8 +9,10 @@
 
 namespace crease {
 
-/// Whether the name says so: .json, or ITK's .tfm and .h5.
+/// Whether the name says so: .json, or ITK's .tfm, .txt, .h5, .hdf5 and .mat.
 bool is_transform_file(const std::string& file);
+
+// An image of vectors (.nii, .nii.gz, .mha, .mhd, .nrrd) is a transform, too: a DisplacementFieldTransform.
 
 /// 2 or 3, as all of these transform files say.
 /// @throws FileError for a file that is no transform of an image; InvalidInput when two differ.

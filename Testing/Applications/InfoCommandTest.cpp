@@ -170,5 +170,34 @@ TEST_F(InfoCommand, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(run_crease({"info"}).code, 2);
 }
 
+TEST_F(InfoCommand, DescribesTransformsOfItkAndFields) {
+  const auto affine = info(folder.write("a.tfm",
+                                        "#Insight Transform File V1.0\nTransform: "
+                                        "TranslationTransform_double_2_2\nParameters: 3 4\n"));
+  EXPECT_EQ(affine["kind"], "transform");
+  EXPECT_EQ(affine["type"], "affine");
+  EXPECT_EQ(affine["format"], "ITK text");
+  EXPECT_EQ(affine["offset_mm"], (std::vector<double>{3, 4}));
+  EXPECT_EQ(affine["matrix"][1], (std::vector<double>{0, 1}));
+  const auto field = info(folder.write("f.tfm",
+                                       "#Insight Transform File V1.0\nTransform: "
+                                       "DisplacementFieldTransform_double_2_2\nParameters: 0 0 "
+                                       "3 4\nFixedParameters: 2 1 0 0 1 1 1 0 0 1\n"));
+  EXPECT_EQ(field["type"], "displacement field");
+  EXPECT_EQ(field["size"], (std::vector<int>{2, 1}));
+  EXPECT_EQ(field["largest_displacement_mm"], 5);
+  const auto run = run_crease({"info", (folder / "f.tfm").string()});
+  EXPECT_THAT(run.out, HasSubstr("displacement field transform, 2D to 2D (ITK text)"));
+}
+
+TEST_F(InfoCommand, DescribesPointsOfVtk) {
+  const auto json = info(folder.write(
+      "a.vtk",
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 1 2 3 4 5\n"));
+  EXPECT_EQ(json["kind"], "points");
+  EXPECT_EQ(json["count"], 2);
+  EXPECT_EQ(json["upper_mm"], (std::vector<double>{3, 4, 5}));
+}
+
 }  // namespace
 }  // namespace crease

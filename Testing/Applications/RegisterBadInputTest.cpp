@@ -203,12 +203,17 @@ TEST_F(RegisterBadInput, SearchStartsFromTheFileGiven) {
   AffineMap<2> near;
   near.offset = {298, 1};
   save_transform(AffineTransform<2>(near), folder / "near.json");
-  ASSERT_EQ(run_with(image("fixed.mha"), moved,
-                     {"--init", (folder / "near.json").string(), "--transform", "rigid"})
-                .code,
-            0);
-  const auto found = load_transform<2>(folder / "out/transform.json");
-  EXPECT_LT((found->map({30, 30}) - Point<2>(330, 30)).norm(), 0.02);  // pixel
+  const std::string of_itk = folder.write(
+      "near.tfm",
+      "#Insight Transform File V1.0\nTransform: CompositeTransform_double_2_2\nTransform: "
+      "TranslationTransform_double_2_2\nParameters: 200 1\nTransform: "
+      "Euler2DTransform_double_2_2\nParameters: 0 98 0\nFixedParameters: 9 9\n");
+  for (const std::string& start : {(folder / "near.json").string(), of_itk}) {
+    ASSERT_EQ(run_with(image("fixed.mha"), moved, {"--init", start, "--transform", "rigid"}).code,
+              0);
+    const auto found = load_transform<2>(folder / "out/transform.json");
+    EXPECT_LT((found->map({30, 30}) - Point<2>(330, 30)).norm(), 0.02);  // pixel
+  }
   const auto result = testing::read_result(output());
   EXPECT_TRUE(result["ncc"]["before"].is_null());  // without a start they do not overlap
   EXPECT_GT(result["ncc"]["after"], 0.99);

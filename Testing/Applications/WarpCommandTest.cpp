@@ -247,6 +247,154 @@ TEST_F(WarpCommand, RefusesContradictions) {
   refused({"--transform", t, "--points", points, "--output-points", file("o.csv")}, 3, "p.csv");
 }
 
+// A similarity of ITK about the origin: twice as large, turned by a right angle, and shifted.
+TEST_F(WarpCommand, TakesTransformsOfItkInChains) {
+  const std::string tfm = folder.write(
+      "turn.tfm",
+      "#Insight Transform File V1.0\nTransform: Similarity2DTransform_double_2_2\nParameters: 2 "
+      "1.5707963267948966 5 6\nFixedParameters: 0 0\n");
+  const std::string points = folder.write("in.csv", "x,y\n1,2\n");
+  const auto run = run_crease({"warp", "--transform", tfm, "--transform", file("turn.json"),
+                               "--points", points, "--output-points", file("out.csv"), "--quiet"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto row = rows(read_text(folder / "out.csv"))[0];
+  EXPECT_NEAR(row[0], 30 - 8, 1e-12);  // (1, 2) -> (1, 8) -> (30 - 8, 4 + 1)
+  EXPECT_NEAR(row[1], 4 + 1, 1e-12);
+}
+
+TEST_F(WarpCommand, DisplacementFieldsAreTransformsAndHaveInverses) {
+  ASSERT_EQ(run_crease({"warp", "--transform", file("spline.json"), "--reference",
+                        file("image.mha"), "--displacement", file("u.mha"), "--quiet"})
+                .code,
+            0);
+  const std::string points = folder.write("in.csv", "x,y\n10,20\n4.5,9.1\n30,41\n");
+  const auto warp = [&](const std::string& in, const std::string& out, bool inverse) {
+    std::vector<std::string> arguments = {"warp",   "--transform",     file("u.mha"), "--points",
+                                          in,       "--output-points", out,           "--json",
+                                          "--quiet"};
+    if (inverse) arguments.emplace_back("--inverse");
+    const auto run = run_crease(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return nlohmann::json::parse(run.out);
+  };
+  EXPECT_FALSE(warp(points, file("there.csv"), false).contains("residual_mm"));
+  const auto json = warp(file("there.csv"), file("back.csv"), true);
+  EXPECT_EQ(json["unresolved"], 0);
+  EXPECT_LT(json["residual_mm"]["max"], 1e-6);
+  EXPECT_LE(json["residual_mm"]["mean"], json["residual_mm"]["max"]);
+  const auto in = rows(read_text(points)), back = rows(read_text(folder / "back.csv"));
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    EXPECT_NEAR(back[i][0], in[i][0], 1e-6);
+    EXPECT_NEAR(back[i][1], in[i][1], 1e-6);
+  }
+}
+
+TEST_F(WarpCommand, SaysHowGoodTheInverseIs) {
+  const std::vector<std::string> arguments = {
+      "warp",     "--transform",     file("spline.json"), "--inverse",
+      "--moving", file("image.mha"), "--reference",       file("image.mha"),
+      "--quiet",  "--output-image",  file("w.mha")};
+  const auto run = run_crease(arguments);
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("T(T^-1(y)) - y: mean "));
+  EXPECT_THAT(run.out, HasSubstr(" 0 of 1280 unresolved"));
+}
+
+TEST_F(WarpCommand, KeepsLargeLabelsExactly) {
+  Raster<2> raster;
+  raster.size = {40, 32};
+  Image<std::int32_t, 2> labels(raster);
+  for (std::size_t k = 0; k < labels.values().size(); ++k) {
+    labels.values()[k] = 1'000'000'001 + static_cast<int>(k % 7);
+  }
+  write_image(folder / "large.mha", labels, PixelType::kUint32);
+  save_transform(AffineTransform<2>(), folder / "rest.json");
+  const auto run = run_crease(
+      {"warp", "--transform", file("rest.json"), "--moving", file("large.mha"), "--reference",
+       file("large.mha"), "--output-image", file("w.mha"), "--interpolator", "nearest", "--quiet"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(read_labels<2>(folder / "w.mha").values(), labels.values());
+  EXPECT_EQ(read_image_header(folder / "w.mha").pixel_type, PixelType::kUint32);
+}
+
+TEST_F(WarpCommand, MapsPointsOfOtherProgramsAndKeepsTheRest) {
+  AffineMap<3> map;
+  map.offset = {1, 2, 3};
+  save_transform(AffineTransform<3>(map), folder / "shift.json");
+  const auto warp = [&](const char* what, const std::string& name, const std::string& text) {
+    const std::string in = folder.write(name, text), out = file("out-" + name);
+    const auto run = run_crease({"warp", "--transform", file("shift.json"), message("--", what), in,
+                                 message("--output-", what), out, "--quiet"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return read_text(out);
+  };
+  const std::string vtk = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n";
+  for (const char* what : {"points", "mesh"}) {
+    EXPECT_EQ(warp(what, "a.vtk", vtk + "POINTS 1 float\n0 0 0.5\nVERTICES 1 2\n1 0\n"),
+              vtk + "POINTS 1 double\n1 2 3.5\nVERTICES 1 2\n1 0\n");
+  }
+  EXPECT_EQ(warp("points", "a.fcsv", "# CoordinateSystem = RAS\nid,10,10,10,0,0,0,1,1,1,0,F\n"),
+            "# CoordinateSystem = RAS\nid,9,8,13,0,0,0,1,1,1,0,F\n");
+  const auto json = nlohmann::json::parse(
+      warp("points", "a.mrk.json",
+           R"({"markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "display": {"a": 1},
+               "controlPoints": [{"label": "F", "position": [1, 1, 1]}]}]})"));
+  EXPECT_EQ(json["markups"][0]["controlPoints"][0]["position"], (std::vector<double>{2, 3, 4}));
+  EXPECT_EQ(json["markups"][0]["display"]["a"], 1);
+  EXPECT_THAT(warp("mesh", "a.stl",
+                   "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                   "vertex 0 1 0\nendloop\nendfacet\nendsolid\n"),
+              HasSubstr("vertex 2 2 3\n"));
+}
+
+TEST_F(WarpCommand, RefusesDamagedFiles) {
+  const std::string points = folder.write("p.csv", "x,y\n1,2\n"), out = file("o.csv");
+  const auto refused = [&](const std::string& transform, const char* text) {
+    const auto run = run_crease(
+        {"warp", "--transform", transform, "--points", points, "--output-points", out, "--quiet"});
+    EXPECT_EQ(run.code, 3) << transform;
+    EXPECT_THAT(run.err, ::testing::AllOf(HasSubstr(transform), HasSubstr(text)));
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  refused(folder.write("a.tfm", "nothing\n"), "does not begin with \"#Insight Transform File\"");
+  refused(folder.write("b.tfm",
+                       "#Insight Transform File V1.0\nTransform: "
+                       "AffineTransform_double_2_2\nParameters: 1 0 0"),
+          "may be cut off");
+  refused(folder.write("c.tfm",
+                       "#Insight Transform File V1.0\nTransform: "
+                       "SplineOfTheFuture_double_2_2\nParameters: 1\n"),
+          "SplineOfTheFuture_double_2_2 is of a class that crease has no equal of");
+  refused(folder.write("a.h5", "nothing"), "is not an HDF5 file");
+  refused(folder.write("a.mat", "nothing that Matlab wrote"), "is no file of Matlab 4");
+  refused(folder.write("a.json", "{}"), "is not a transform file");
+  refused(file("none.h5"), "no such file");
+  refused(file("labels.mha"), "1 number per pixel; a displacement field has 2");
+  DisplacementField<2> field(read_image<2>(folder / "image.mha").image.raster());
+  field(4, 7)[1] = std::nan("");
+  write_displacement_field(folder / "nan.mha", field);
+  refused(file("nan.mha"), "the displacement of pixel (4, 7) is not finite");
+}
+
+TEST_F(WarpCommand, RefusesPointsThatItCannotMap) {
+  save_transform(AffineTransform<3>(), folder / "rest3.json");
+  const auto refused = [&](const char* transform, const std::string& in, const char* out,
+                           const char* text) {
+    const auto run = run_crease({"warp", "--transform", file(transform), "--points", in,
+                                 "--output-points", file(out), "--quiet"});
+    EXPECT_EQ(run.code, 3) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(text));
+  };
+  const std::string csv = folder.write("p.csv", "x,y\n1,2\n");
+  refused("rest3.json", csv, "o.csv", "has no column 'z', which a 3D transform needs");
+  refused("turn.json", csv, "o.vtk", "name a file that ends in .csv");
+  refused("turn.json", folder.write("p.vtk", "# vtk DataFile Version 3.0\nt\nASCII\n"), "o.vtk",
+          "p.vtk: ends within its header");
+  refused("turn.json", folder.write("p.mrk.json", "{"), "o.mrk.json", "is not a markups file");
+  refused("turn.json", folder.write("p.xyz", "1 2 3\n"), "o.xyz",
+          "the form of points is not known");
+}
+
 TEST_F(WarpCommand, TellsItsFiguresAsJson) {
   const std::string points = folder.write("in.csv", "x,y\n10,20\n");
   const auto run = run_crease({"warp", "--transform", file("turn.json"), "--points", points,

@@ -1,6 +1,7 @@
 // itk_write_transforms FOLDER: transforms of each class that crease reads, written by ITK itself, and where
 // ITK maps points by them. FOLDER gets NAME.tfm, NAME.h5 and, of single transforms, NAME.mat; fields as images,
 // too; and NAME.points, "x y[ z] x' y'[ z']" per line in mm. NAME begins with the dimension. Links ITK alone.
+#include <hdf5.h>
 #include <itkAffineTransform.h>
 #include <itkBSplineDeformableTransform.h>
 #include <itkBSplineTransform.h>
@@ -189,7 +190,7 @@ typename itk::DisplacementFieldTransform<Number, Dim>::Pointer field() {
   typename Kind::DisplacementFieldType::SpacingType spacing;
   for (unsigned a = 0; a < Dim; ++a) {
     size[a] = 12 - 2 * a;
-    origin[a] = -8 + a;
+    origin[a] = a - 8.0;
     spacing[a] = 2.5 + 0.7 * a;
   }
   image->SetRegions(size);
@@ -264,6 +265,24 @@ void write_single_precision() {
                          Dim>(chain, "float-hdf5", ".h5");
 }
 
+/// Before version 5 ITK misspelled the names of the lists in HDF5 files.
+template <unsigned Dim>
+void write_old_names() {
+  const auto transform = changed<itk::AffineTransform<double, Dim>>();
+  const std::string name = path(Dim, "old-names", ".h5");
+  write<itk::HDF5TransformIOTemplate<double>, double>(transform.GetPointer(), name);
+  write_points<Dim>(transform, "old-names");
+  const hid_t file = H5Fopen(name.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  for (const std::string list : {"FixedParameters", "Parameters"}) {
+    const std::string group = "/TransformGroup/0/";
+    if (H5Lmove(file, (group + "Transform" + list).c_str(), file,
+                (group + "Tranform" + list).c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0) {
+      throw std::runtime_error(name + ": no list to give its old name");
+    }
+  }
+  H5Fclose(file);
+}
+
 /// What crease has no equal of.
 template <unsigned Dim>
 void write_kernel_spline() {
@@ -299,6 +318,7 @@ void write_common() {
   write_old_spline<Dim>();
   write_field<Dim>();
   write_single_precision<Dim>();
+  write_old_names<Dim>();
   write_kernel_spline<Dim>();
 }
 

@@ -2,7 +2,6 @@
 
 #include <hdf5.h>
 
-#include <array>
 #include <string>
 
 #include "Core/Error.h"
@@ -27,12 +26,19 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Without a lock, which some network file systems refuse.
+hid_t open(const std::filesystem::path& file) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, /*use_file_locking=*/false, /*ignore_when_disabled=*/true);
+  return H5Fopen(file.c_str(), H5F_ACC_RDONLY, access);
+}
+
 /// ITK's layout: /TransformGroup/k holds "TransformType" (a text) and, but for composites,
 /// "TransformFixedParameters" and "TransformParameters". Before ITK 5 both names began with "Tranform".
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::filesystem::path& file)
-      : name_(file.string()), file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {
+      : name_(file.string()), file_(open(file), H5Fclose) {
     if (!file_.valid()) fail("is not a complete HDF5 file; it may be cut off or damaged");
   }
 

@@ -73,17 +73,22 @@ void add_mesh(const SimplexMesh<Dim>& mesh, Json& json) {
   json["regions"] = mesh.regions;
 }
 
-template <int Dim>
-Json triangular_to_json(const KnotNet<Dim>& net) {
-  Json clouds = Json::array(), creases = Json::array();
-  for (const auto& cloud : net.clouds) clouds.push_back(flat<Dim>(cloud));
-  for (const auto& edge : net.crease_edges) {
+Json crease_edges_to_json(const std::vector<CreaseEdge>& edges) {
+  Json creases = Json::array();
+  for (const auto& edge : edges) {
     creases.push_back({{"vertices", edge.vertices}, {"body_side", edge.body_side}});
   }
+  return creases;
+}
+
+template <int Dim>
+Json triangular_to_json(const KnotNet<Dim>& net) {
+  Json clouds = Json::array();
+  for (const auto& cloud : net.clouds) clouds.push_back(flat<Dim>(cloud));
   Json json = {{"kind", "triangular"},
                {"degree", net.degree},
                {"clouds", clouds},
-               {"crease_edges", creases}};
+               {"crease_edges", crease_edges_to_json(net.crease_edges)}};
   add_mesh(net.mesh, json);
   return json;
 }
@@ -117,6 +122,17 @@ SimplexMesh<Dim> mesh_from_json(const JsonReader& reader) {
   return mesh;
 }
 
+std::vector<CreaseEdge> crease_edges_from_json(const JsonReader& creases,
+                                               std::size_t num_vertices) {
+  std::vector<CreaseEdge> edges;
+  for (std::size_t n = 0; n < creases.size(); ++n) {
+    const JsonReader edge = creases.at(n);
+    edges.push_back(
+        {vertex_numbers<2>(edge.at("vertices"), num_vertices), edge.at("body_side").flag()});
+  }
+  return edges;
+}
+
 template <int Dim>
 std::shared_ptr<const SplineBasis<Dim>> triangular_from_json(const JsonReader& reader) {
   KnotNet<Dim> net;
@@ -125,23 +141,24 @@ std::shared_ptr<const SplineBasis<Dim>> triangular_from_json(const JsonReader& r
   const JsonReader clouds = reader.at("clouds");
   for (std::size_t n = 0; n < clouds.size(); ++n)
     net.clouds.push_back(points_of<Dim>(clouds.at(n)));
-  const JsonReader creases = reader.at("crease_edges");
-  for (std::size_t n = 0; n < creases.size(); ++n) {
-    const JsonReader edge = creases.at(n);
-    net.crease_edges.push_back({vertex_numbers<2>(edge.at("vertices"), net.mesh.vertices.size()),
-                                edge.at("body_side").flag()});
-  }
+  net.crease_edges = crease_edges_from_json(reader.at("crease_edges"), net.mesh.vertices.size());
   return std::make_shared<TriangularBSplineBasis<Dim>>(std::move(net));
 }
 
-/// The vertices' triangles are written too: control points mean nothing without them, and rules for placing
-/// them may change.
+/// The vertices' corners are written too: control points mean nothing without them, and rules for placing
+/// them may change. On a crease the normal comes first, and corners have a depth.
 Json powell_sabin_to_json(const PowellSabinNet& net) {
-  std::vector<Point<2>> corners;
-  for (const auto& triangle : net.triangles) {
-    corners.insert(corners.end(), triangle.begin(), triangle.end());
+  Json vertices = Json::array();
+  for (const auto& vertex : net.vertices) {
+    std::vector<double> numbers;
+    if (vertex.creased()) numbers.assign(vertex.normal.begin(), vertex.normal.end());
+    const Eigen::MatrixXd corners = vertex.corners.topRows(vertex.creased() ? 3 : 2);
+    numbers.insert(numbers.end(), corners.reshaped().begin(), corners.reshaped().end());
+    vertices.push_back(numbers);
   }
-  Json json = {{"kind", "powell-sabin"}, {"triangles", flat<2>(corners)}};
+  Json json = {{"kind", "powell-sabin"},
+               {"corners", vertices},
+               {"crease_edges", crease_edges_to_json(net.crease_edges)}};
   add_mesh(net.mesh, json);
   return json;
 }
@@ -149,14 +166,21 @@ Json powell_sabin_to_json(const PowellSabinNet& net) {
 std::shared_ptr<const SplineBasis<2>> powell_sabin_from_json(const JsonReader& reader) {
   PowellSabinNet net;
   net.mesh = mesh_from_json<2>(reader);
-  const JsonReader triangles = reader.at("triangles");
-  const auto corners = points_of<2>(triangles);
-  if (corners.size() != 3 * net.mesh.vertices.size()) {
-    triangles.fail_here("does not have three points per vertex");
+  const JsonReader corners = reader.at("corners");
+  for (std::size_t v = 0; v < corners.size(); ++v) {
+    const JsonReader numbers = corners.at(v);
+    PowellSabinVertex vertex;
+    vertex.corners.setZero(3, numbers.size() == 6 ? 3 : 4);
+    if (numbers.size() == 6) {
+      vertex.corners.topRows<2>() = numbers.numbers<2, 3>();
+    } else {
+      const auto all = numbers.numbers<14>();
+      vertex.normal = all.head<2>();
+      vertex.corners = all.tail<12>().reshaped(3, 4);
+    }
+    net.vertices.push_back(vertex);
   }
-  for (std::size_t k = 0; k < corners.size(); k += 3) {
-    net.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
-  }
+  net.crease_edges = crease_edges_from_json(reader.at("crease_edges"), net.mesh.vertices.size());
   return std::make_shared<PowellSabinBasis>(std::move(net));
 }
 

@@ -11,6 +11,7 @@
 #include "Transforms/Domains/Mesher.h"
 #include "Transforms/Domains/TetrahedronKnots.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
+#include "Transforms/Splines/PowellSabinCreases.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
@@ -41,16 +42,20 @@ inline std::shared_ptr<const SplineBasis<2>> triangles_over(const Box<2>& box,
   return std::make_shared<TriangularBSplineBasis<2>>(place_knots(domain, options).net);
 }
 
-/// A round body in the middle, a third of the box wide, with a crease along its outline.
-inline std::shared_ptr<const SplineBasis<2>> creased_over(const Box<2>& box, int degree = 3,
-                                                          int smoothness = -1) {
+/// A round body in the middle, a third of the box wide.
+inline DomainMesh round_body_over(const Box<2>& box) {
   const double size = box.size().minCoeff();
   const Point<2> middle = 0.5 * (box.lower + box.upper);
-  const auto domain = mesh_domain(rectangle(box.lower[0], box.lower[1], box.upper[0], box.upper[1]),
-                                  {closed_line(regular_polygon(middle, size / 3, 12))},
-                                  {.edge_length = size / 3, .edge_length_near_lines = size / 6});
+  return mesh_domain(rectangle(box.lower[0], box.lower[1], box.upper[0], box.upper[1]),
+                     {closed_line(regular_polygon(middle, size / 3, 12))},
+                     {.edge_length = size / 3, .edge_length_near_lines = size / 6});
+}
+
+/// With a crease along the body's outline.
+inline std::shared_ptr<const SplineBasis<2>> creased_over(const Box<2>& box, int degree = 3,
+                                                          int smoothness = -1) {
   return std::make_shared<TriangularBSplineBasis<2>>(
-      place_knots(domain, {.degree = degree, .smoothness = smoothness}).net);
+      place_knots(round_body_over(box), {.degree = degree, .smoothness = smoothness}).net);
 }
 
 /// The same net with its vertices, triangles and their corners in another order.
@@ -86,6 +91,8 @@ std::vector<SampleBasis<Dim>> sample_bases(const Box<Dim>& box) {
     bases.push_back({"creased triangles", creased_over(box)});
     bases.push_back(
         {"Powell-Sabin", std::make_shared<PowellSabinBasis>(structured_triangulation(box, 4, 3))});
+    bases.push_back({"creased Powell-Sabin",
+                     std::make_shared<PowellSabinBasis>(place_powell_sabin(round_body_over(box)))});
   } else {
     bases.push_back({"tetrahedra, quadratic",
                      std::make_shared<TriangularBSplineBasis<3>>(

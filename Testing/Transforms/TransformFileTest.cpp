@@ -13,6 +13,7 @@
 #include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/RigidTransform.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
+#include "Transforms/Splines/PowellSabinCreases.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
 namespace crease {
@@ -118,9 +119,20 @@ TEST_F(TransformFile, KeepsTheWholeKnotNet) {
 }
 
 TEST_F(TransformFile, KeepsTheWholePowellSabinNet) {
-  PowellSabinNet net = place_powell_sabin(testing::ring_net(2, 0.3, true).mesh);
-  for (auto& q : net.triangles[5]) q = net.mesh.vertices[5] + 1.25 * (q - net.mesh.vertices[5]);
-  save_transform(SplineTransform<2>(std::make_shared<PowellSabinBasis>(net)), file());
+  DomainMesh domain;
+  domain.mesh = testing::ring_net(2, 0.3, true).mesh;
+  domain.chains.emplace_back();
+  domain.chains[0].closed = true;
+  domain.chains[0].body = BodySide::kLeft;
+  for (int k = 0; k < 12; ++k) domain.chains[0].vertices.push_back(13 + k);
+  PowellSabinNet net = place_powell_sabin(domain);
+  ASSERT_EQ(net.crease_edges.size(), 12U);
+  auto corners = net.vertices[5].corners.topRows<2>();  // not where they would be placed
+  corners = (1.25 * corners).colwise() - 0.25 * net.mesh.vertices[5];
+  const auto save = [&] {
+    save_transform(SplineTransform<2>(std::make_shared<PowellSabinBasis>(net)), file());
+  };
+  save();
   const auto loaded = load_transform<2>(file());
   const auto& again = dynamic_cast<const PowellSabinBasis&>(
                           dynamic_cast<const SplineTransform<2>&>(*loaded).basis())
@@ -128,11 +140,23 @@ TEST_F(TransformFile, KeepsTheWholePowellSabinNet) {
   EXPECT_EQ(again.mesh.vertices, net.mesh.vertices);
   EXPECT_EQ(again.mesh.simplices, net.mesh.simplices);
   EXPECT_EQ(again.mesh.regions, net.mesh.regions);
-  EXPECT_EQ(again.triangles, net.triangles);
+  ASSERT_EQ(again.vertices.size(), net.vertices.size());
+  for (std::size_t v = 0; v < net.vertices.size(); ++v) {
+    EXPECT_EQ(again.vertices[v].corners, net.vertices[v].corners);
+    EXPECT_EQ(again.vertices[v].normal, net.vertices[v].normal);
+  }
+  ASSERT_EQ(again.crease_edges.size(), net.crease_edges.size());
+  for (std::size_t e = 0; e < net.crease_edges.size(); ++e) {
+    EXPECT_EQ(again.crease_edges[e].vertices, net.crease_edges[e].vertices);
+    EXPECT_EQ(again.crease_edges[e].body_side, net.crease_edges[e].body_side);
+  }
 
-  change("\"triangles\": [", "\"triangles\": [1, 2,");
-  expect_error("\"basis.triangles\" does not have three points per vertex");
-  save_transform(SplineTransform<2>(std::make_shared<PowellSabinBasis>(net)), file());
+  change("\"corners\": [", "\"corners\": [[1, 2],");
+  expect_error("\"basis.corners[0]\" has 2 numbers");
+  save();
+  change("\"corners\": [", "\"corners\": [[0, 0, 1, 0, 0, 1],");
+  expect_error("its contents contradict each other");
+  save();
   change("\"simplices\": [", "\"simplices\": [[0, 1, 2],");
   expect_error("does not have one number per simplex");
 }

@@ -22,14 +22,16 @@ class KnotLocator;
 /// sum to 1; the control points of the identity are the corners Q_j; and control points are linear in value and
 /// gradient: c_j = F(V) + grad F(V) (Q_j - V). All quadratics are contained.
 ///
+/// With creases (PowellSabinCreases.h) the gradient may jump across lines: their vertices have four functions.
+///
 /// Unlike C1 quadratics on the triangles themselves they have functions enough to bend: on a known smooth
 /// motion their bending energy converges to the motion's.
 ///
 /// Source: P. Dierckx, "On calculating normalized Powell-Sabin B-splines", CAGD 15, 1997.
 class PowellSabinBasis final : public SplineBasis<2> {
  public:
-  /// @throws InvalidInput for what PowellSabinSplit refuses, and for triangles of vertices that are not
-  /// counter-clockwise or do not hold their points; the message names the vertex.
+  /// @throws InvalidInput for what PowellSabinSplit and PowellSabinSides refuse, and for triangles of vertices
+  /// (tetrahedra on creases) that are flat or do not hold their points; the message names the vertex.
   explicit PowellSabinBasis(PowellSabinNet net);
   /// With the triangles of place_powell_sabin().
   explicit PowellSabinBasis(SimplexMesh<2> mesh)
@@ -38,6 +40,8 @@ class PowellSabinBasis final : public SplineBasis<2> {
 
   const PowellSabinNet& net() const { return net_; }
   const PowellSabinPatch& patch(int triangle) const { return patches_[triangle]; }
+  /// First of the consecutive control points of a vertex.
+  int first_control_point(int vertex) const { return first_[vertex]; }
   /// The triangle of the mesh that holds x (the lowest number on ties), -1 outside the domain.
   int find_simplex(const Point<2>& x) const;
   /// Control values of the spline with the values and gradients (1/mm) given at the vertices.
@@ -45,7 +49,7 @@ class PowellSabinBasis final : public SplineBasis<2> {
   Eigen::VectorXd control_values(std::span<const double> values,
                                  std::span<const Vector<2>> gradients) const;
 
-  int num_control_points() const override { return 3 * static_cast<int>(net_.triangles.size()); }
+  int num_control_points() const override { return first_.back(); }
   int degree() const override { return 2; }
   int smoothness() const override { return 1; }
   bool contains(const Point<2>& x) const override { return find_simplex(x) >= 0; }
@@ -55,9 +59,10 @@ class PowellSabinBasis final : public SplineBasis<2> {
   double mean_edge_length() const override { return mean_edge_length_; }
   double edge_length(const Point<2>& x) const override;
   BasisValues<2> evaluate(const Point<2>& x, int derivatives = 0) const override;
-  /// The corners of the vertices' triangles.
+  /// The corners of the vertices' triangles, vertex by vertex.
   ControlPoints<2> greville_points() const override;
-  /// One element per triangle of the mesh, with the points of its small triangles.
+  /// One element per triangle of the mesh, with the points of its small triangles; those in bands of creases
+  /// by themselves.
   std::vector<QuadratureElement<2>> quadrature(
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const override;
@@ -67,9 +72,11 @@ class PowellSabinBasis final : public SplineBasis<2> {
   std::unique_ptr<BoundGrid<2>> bind(const Raster<2>& raster) const override;
 
  private:
-  QuadratureElement<2> element(int triangle, int polynomial_degree, int derivatives) const;
+  QuadratureElement<2> element(int triangle, int band, int polynomial_degree,
+                               int derivatives) const;
 
   PowellSabinNet net_;
+  std::vector<int> first_;  // control point of each vertex; and their number
   std::vector<PowellSabinPatch> patches_;
   std::unique_ptr<KnotLocator<2>> locator_;
   std::vector<std::array<int, 2>> border_;  // its edges

@@ -27,7 +27,7 @@ std::array<int, 3> points_of(int cell) {
 
 }  // namespace
 
-PowellSabinPatch::PowellSabinPatch(const Parts& parts) {
+PowellSabinPatch::PowellSabinPatch(const Parts& parts) : bands_(parts.bands) {
   for (int k = 0; k < 3; ++k) {
     points_[k] = parts.corners[k];
     points_[3 + k] = parts.edge_points[k];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -38,6 +39,8 @@ class PowellSabinPatch {
     std::array<PowellSabinJets, 3> jets;                      ///< at the corners, one-sided
     std::array<std::array<PowellSabinJets, 2>, 3> edge_jets;  ///< of corner k, k + 1 for the edge
     std::array<int, 3> first_control_point;                   ///< of each corner; others follow
+    /// Of the cells: 0 none, 1 in the band of a crease with a body, 2 of one without.
+    std::array<int, 6> bands;
   };
   explicit PowellSabinPatch(const Parts& parts);
 
@@ -49,6 +52,10 @@ class PowellSabinPatch {
   std::array<Point<2>, 3> cell(int number) const;
   /// The one that holds u, or is nearest to it; the lowest number on ties.
   int find_cell(const Point<2>& u) const;
+  int band(int cell) const { return bands_[cell]; }
+  bool has_band(int band) const {
+    return std::find(bands_.begin(), bands_.end(), band) != bands_.end();
+  }
   /// The polynomials of a cell at u, whether it holds u or not: rows = functions; columns = values, then
   /// (derivatives >= 1) d/dx, d/dy, then (derivatives = 2) xx, xy, yy.
   PerFunction evaluate(int cell, const Point<2>& u, int derivatives) const;
@@ -58,6 +65,7 @@ class PowellSabinPatch {
   static std::array<int, 6> ordinates_of(int cell);
 
   std::vector<int> control_points_;
+  std::array<int, kNumCells> bands_;
   std::array<Point<2>, 7> points_;  // corners, edge points, centre
   // Per function: at corners 0-2, from corner k towards edge point k 3-5 and k - 1 6-8, towards the
   // centre 9-11, at the edge points 12-14, between them and the centre 15-17, at the centre 18.

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "Core/Error.h"
-#include "Core/Parallel.h"
-#include "Transforms/Domains/ConvexPolygon.h"
+#include "Transforms/Domains/Polygon.h"
+#include "Transforms/Splines/PowellSabinCreases.h"
 
 namespace crease {
 namespace {
@@ -62,15 +62,6 @@ class Wedge {
 
 }  // namespace
 
-std::vector<Point<2>> powell_sabin_points(const SimplexMesh<2>& mesh, const PowellSabinSplit& split,
-                                          int vertex) {
-  const Point<2>& v = mesh.vertices[vertex];
-  std::vector<Point<2>> points = {v};
-  for (int e : split.topology().edges_at(vertex)) points.push_back(0.5 * (v + split.edge_point(e)));
-  for (int t : split.topology().triangles_at(vertex)) points.push_back(0.5 * (v + split.centre(t)));
-  return points;
-}
-
 PowellSabinTriangle enclosing_triangle(std::span<const Point<2>> polygon) {
   const std::size_t n = polygon.size();
   double least = std::numeric_limits<double>::infinity();
@@ -98,16 +89,17 @@ PowellSabinTriangle enclosing_triangle(std::span<const Point<2>> polygon) {
   return best;
 }
 
+PowellSabinVertex triangle_vertex(const PowellSabinTriangle& triangle) {
+  PowellSabinVertex vertex;
+  vertex.corners.setZero(3, 3);
+  for (int j = 0; j < 3; ++j) vertex.corners.col(j).head<2>() = triangle[j];
+  return vertex;
+}
+
 PowellSabinNet place_powell_sabin(SimplexMesh<2> mesh) {
-  const PowellSabinSplit split(mesh);
-  PowellSabinNet net;
-  net.triangles.resize(mesh.vertices.size());
-  parallel_for(std::ssize(net.triangles), [&](std::int64_t v) {
-    net.triangles[static_cast<std::size_t>(v)] =
-        enclosing_triangle(convex_hull(powell_sabin_points(mesh, split, static_cast<int>(v))));
-  });
-  net.mesh = std::move(mesh);
-  return net;
+  DomainMesh domain;
+  domain.mesh = std::move(mesh);
+  return place_powell_sabin(domain);
 }
 
 }  // namespace crease

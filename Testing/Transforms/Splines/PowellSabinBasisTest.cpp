@@ -14,6 +14,7 @@
 #include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/SplineProjection.h"
 #include "Transforms/Splines/KnotLocator.h"
+#include "Transforms/Splines/PowellSabinSides.h"
 
 namespace crease {
 namespace {
@@ -289,10 +290,16 @@ TEST_P(PowellSabin, CouplesTheFunctionsThatMeet) {
 }
 
 TEST_P(PowellSabin, TrianglesOfVerticesAreSmall) {
-  for (int v = 0; v < static_cast<int>(basis.net().mesh.vertices.size()); ++v) {
-    const PowellSabinSplit split(basis.net().mesh);
-    const auto hull = convex_hull(powell_sabin_points(basis.net().mesh, split, v));
-    EXPECT_LT(0.5 * signed_content<2>(basis.net().triangles[v]), 2.01 * signed_area(hull));
+  const auto& mesh = basis.net().mesh;
+  const PowellSabinSplit split(mesh);
+  const PowellSabinSides sides(mesh, split, {},
+                               std::vector<Vector<2>>(mesh.vertices.size(), Vector<2>::Zero()));
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    std::vector<Point<2>> points;
+    for (const auto& p : sides.points(mesh, split, v).colwise()) points.push_back(p.head<2>());
+    const auto& q = basis.net().vertices[v].corners;
+    EXPECT_LT(0.5 * signed_content<2>({q.col(0).head<2>(), q.col(1).head<2>(), q.col(2).head<2>()}),
+              2.01 * signed_area(convex_hull(points)));
   }
 }
 
@@ -412,8 +419,8 @@ TEST(PowellSabinBasis, IsAffinelyInvariantOnceItsTrianglesAreGiven) {
   PowellSabinNet net = place_powell_sabin(mesh);
   const PowellSabinBasis basis(net);
   for (auto& v : net.mesh.vertices) v = moved(v);
-  for (auto& triangle : net.triangles) {
-    for (auto& q : triangle) q = moved(q);
+  for (auto& vertex : net.vertices) {
+    for (auto q : vertex.corners.colwise()) q.head<2>() = moved(q.head<2>());
   }
   const PowellSabinBasis other(net);
   for (const auto& x : testing::points_inside(mesh, 4, 2)) {
@@ -439,7 +446,7 @@ TEST(PowellSabinBasis, RefusesMeshesAndTrianglesThatCannotWork) {
   });
   expect_refusal("same side of their edge between vertices 0 and 1", [](auto& net) {
     net.mesh = {{{0, 0}, {4, 0}, {1, 3}, {3, 3}}, {{0, 1, 2}, {0, 1, 3}}, {}};
-    net.triangles.resize(4);
+    net.vertices.resize(4);
   });
   expect_refusal("more than two triangles", [](auto& net) {
     net.mesh.simplices.push_back(net.mesh.simplices[7]);
@@ -451,14 +458,23 @@ TEST(PowellSabinBasis, RefusesMeshesAndTrianglesThatCannotWork) {
   expect_refusal("vertex 5 is not a finite point",
                  [](auto& net) { net.mesh.vertices[5][0] = std::nan(""); });
   expect_refusal("2 regions for 18 triangles", [](auto& net) { net.mesh.regions = {0, 1}; });
-  expect_refusal("15 triangles for 16 vertices", [](auto& net) { net.triangles.pop_back(); });
-  expect_refusal("triangle of vertex 6 is folded",
-                 [](auto& net) { std::swap(net.triangles[6][0], net.triangles[6][1]); });
-  expect_refusal("triangle of vertex 6 is folded, flat or not finite",
-                 [](auto& net) { net.triangles[6][0][1] = std::nan(""); });
-  expect_refusal("triangle of vertex 9 does not hold", [](auto& net) {
-    for (auto& q : net.triangles[9]) q += 0.2 * (net.mesh.vertices[9] - q);
+  expect_refusal("15 triangles for 16 vertices", [](auto& net) { net.vertices.pop_back(); });
+  expect_refusal("triangle of vertex 6 is folded", [](auto& net) {
+    net.vertices[6].corners.col(0).swap(net.vertices[6].corners.col(1));
   });
+  expect_refusal("triangle of vertex 6 is folded, flat or not finite",
+                 [](auto& net) { net.vertices[6].corners(1, 0) = std::nan(""); });
+  expect_refusal("triangle of vertex 9 does not hold", [](auto& net) {
+    auto corners = net.vertices[9].corners.template topRows<2>();
+    corners = (0.8 * corners).colwise() + 0.2 * net.mesh.vertices[9];
+  });
+  expect_refusal("vertex 9 has the wrong number of corners",
+                 [](auto& net) { net.vertices[9].corners.setZero(3, 4); });
+  expect_refusal("crease edge 0, 1 is no edge inside", [](auto& net) {
+    net.crease_edges.push_back({{0, 1}, false});
+  });
+  expect_refusal("vertex 9 do not divide",
+                 [](auto& net) { net.vertices[9].normal = Vector<2>(1, 0); });
   EXPECT_THROW(PowellSabinBasis(good).control_values({}, {}), InvalidInput);
 }
 

@@ -62,6 +62,9 @@ MetricSum<Dim>::MetricSum(std::vector<Channel> channels)
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const auto& [metric, weight] = channels_[c];
     if (metric == nullptr) throw InvalidInput(message("channel ", c + 1, " has no metric"));
+    if (dynamic_cast<const MetricSum*>(metric.get()) != nullptr) {
+      throw InvalidInput(message("channel ", c + 1, " is a sum itself; list its channels instead"));
+    }
     if (!(weight >= 0) || !std::isfinite(weight)) {
       throw InvalidInput(message("channel ", c + 1, " has the weight ", weight,
                                  "; weights are finite and not negative"));

@@ -24,7 +24,7 @@ class MetricSum final : public Metric<Dim> {
     double weight = 1;
   };
 
-  /// @throws InvalidInput when there is no channel, a weight is negative or not finite, all are 0, or the
+  /// @throws InvalidInput when there is no channel, one is a sum itself, a weight is negative or not finite, all are 0, or the
   /// fixed rasters differ.
   explicit MetricSum(std::vector<Channel> channels);
 

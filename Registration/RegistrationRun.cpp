@@ -439,12 +439,13 @@ BendingBalance RegistrationRun<Dim>::image_noise(std::size_t l, double value, co
   std::vector<BendingBalance> channels;
   std::vector<double> weights;
   const auto values = channel_values(levels_[l].image->shared_metric(), value);
+  const auto& measures = levels_[l].counted_measures;  // one for all metrics of a single pair
   for (std::size_t c = 0; c < values.size(); ++c) {
     const auto& [metric, weight, own_value] = values[c];
     if (weight == 0) continue;  // says nothing
     channels.push_back({.image_energy = metric->unit() * own_value,
                         .noise_power = metric->noise_power(),
-                        .counted_measure = levels_[l].counted_measures[c],
+                        .counted_measure = measures[std::min(c, measures.size() - 1)],
                         .correlated_measure = levels_[l].correlated_measure,
                         .determined_parameters = determined_by(l, metric, weight, phi)});
     weights.push_back(weight);

@@ -98,6 +98,7 @@ TEST(MetricSum, RefusesWhatCannotBeSummed) {
   auto parts = channels<2>();
   for (auto& part : parts) part.weight = 0;
   refused(parts, "all channels have the weight 0");
+  refused({{std::make_shared<MetricSum<2>>(channels<2>()), 1}}, "channel 1 is a sum itself");
   parts[1].metric = nullptr;
   refused(parts, "channel 2 has no metric");
   auto other = testing::test_input<2>();

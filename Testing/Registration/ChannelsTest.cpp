@@ -6,6 +6,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Metrics/MetricSum.h"
 #include "Registration/CreasedDomain.h"
 #include "Registration/Phantoms/Phantom.h"
 #include "Registration/Registration.h"
@@ -100,6 +101,25 @@ TEST(Channels, OfTheSameImagesAreOne) {
   Channel<2> nothing = seen_through(phantom, shown_left, 4);
   nothing.weight = 0;
   EXPECT_LT(difference(one, registration_of({once, nothing}).run()), 1e-4);
+}
+
+// Two metrics of one pair of images, as one metric or as two channels.
+TEST(Channels, MayBeMetricsOfOnePair) {
+  const Phantom phantom = clean_blobs();
+  Channel<2> pair = seen_through(
+      phantom, [](const Point<2>&) { return 1.0; }, 3);
+  Channel<2> second = pair;
+  second.metric = local_ncc<2>();
+  const auto by_channels = registration_of({pair, second}).schedule({.adapt_weights = true}).run();
+  pair.metric = [](const MetricInput<2>& input) {
+    return std::make_unique<MetricSum<2>>(
+        std::vector<MetricSum<2>::Channel>{{ssd<2>()(input), 1}, {local_ncc<2>()(input), 1}});
+  };
+  const auto by_sum = registration_of({pair}).schedule({.adapt_weights = true}).run();
+  EXPECT_LT(error_mm(by_channels, phantom), 0.15);
+  EXPECT_LT(error_mm(by_sum, phantom), 0.15);
+  EXPECT_EQ(by_sum.channels.size(), 2);
+  EXPECT_NEAR(by_sum.metric_before, by_channels.metric_before, 0.05 * by_sum.metric_before);
 }
 
 TEST(Channels, AreReportedEach) {

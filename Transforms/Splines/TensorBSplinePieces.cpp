@@ -33,8 +33,8 @@ double least_determinant(const std::array<ControlPoints<2>, 2>& columns) {
   return least;
 }
 
-/// In space triples are many: columns c_a + e_a, |e_a| <= r_a, change det C by less than the sum over all ways
-/// to put e's in place of c's.
+/// In space triples are many: with columns c_a + e_a, |e_a| <= r_a, det is det C plus the e_a . (c_b x c_c), whose
+/// least values are known, plus what holds two or three e's, bounded by their lengths.
 double least_determinant(const std::array<ControlPoints<3>, 3>& columns) {
   std::array<Vector<3>, 3> c;
   std::array<double, 3> r{};
@@ -42,11 +42,14 @@ double least_determinant(const std::array<ControlPoints<3>, 3>& columns) {
     c[a] = 0.5 * (columns[a].rowwise().minCoeff() + columns[a].rowwise().maxCoeff());
     r[a] = (columns[a].colwise() - c[a]).colwise().norm().maxCoeff();
   }
-  const double one = r[0] * c[1].cross(c[2]).norm() + r[1] * c[2].cross(c[0]).norm() +
-                     r[2] * c[0].cross(c[1]).norm();
+  double least = c[0].cross(c[1]).dot(c[2]);
+  for (int a = 0; a < 3; ++a) {
+    const Vector<3> normal = c[(a + 1) % 3].cross(c[(a + 2) % 3]);
+    least += (normal.transpose() * (columns[a].colwise() - c[a])).minCoeff();
+  }
   const double two =
       r[0] * r[1] * c[2].norm() + r[1] * r[2] * c[0].norm() + r[2] * r[0] * c[1].norm();
-  return c[0].cross(c[1]).dot(c[2]) - one - two - r[0] * r[1] * r[2];
+  return least - two - r[0] * r[1] * r[2];
 }
 
 /// Applies a matrix along one axis of a field of values, first axis fastest.
@@ -129,12 +132,28 @@ std::array<ControlPoints<Dim>, Dim> TensorBSplinePieces<Dim>::columns(int patch)
 }
 
 template <int Dim>
+std::array<int, Dim> TensorBSplinePieces<Dim>::column_degrees(int axis) const {
+  std::array<int, Dim> degrees;
+  degrees.fill(degree_);
+  --degrees[axis];
+  return degrees;
+}
+
+template <int Dim>
 double TensorBSplinePieces<Dim>::rough_bound(int patch) const {
   auto hulls = columns(patch);
   if (determinant_q_ < 0) hulls[0] = -hulls[0];
   const double largest = largest_entry<Dim>(hulls, linear_);
-  return (least_determinant(hulls) - determinant_error<Dim>(largest, kColumnError * largest)) /
-         std::abs(determinant_q_);
+  const double rounding = determinant_error<Dim>(largest, 3 * kColumnError * largest);
+  double least = least_determinant(hulls);
+  if (Dim == 3 && least <= rounding) {  // Bernstein coefficients lie closer together
+    for (int a = 0; a < Dim; ++a) {
+      const auto components = bernstein_column<Dim>(hulls[a], column_degrees(a));
+      for (int c = 0; c < Dim; ++c) hulls[a].row(c) = components[c].transpose();
+    }
+    least = least_determinant(hulls);
+  }
+  return (least - rounding) / std::abs(determinant_q_);
 }
 
 template <int Dim>
@@ -142,9 +161,7 @@ std::vector<DeterminantPiece<Dim>> TensorBSplinePieces<Dim>::pieces(int patch) c
   const auto hulls = columns(patch);
   std::vector<std::vector<BernsteinBox<Dim>>> c(Dim);  // column, component
   for (int a = 0; a < Dim; ++a) {
-    std::array<int, Dim> degrees;
-    degrees.fill(degree_);
-    --degrees[a];
+    const auto degrees = column_degrees(a);
     for (auto& component : bernstein_column<Dim>(hulls[a], degrees)) {
       c[a].emplace_back(degrees, std::move(component));
     }

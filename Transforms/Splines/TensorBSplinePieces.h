@@ -23,6 +23,7 @@ class TensorBSplinePieces final : public DeterminantPieces<Dim> {
   /// Control values on one span of column a of F Q, Q = direction^-T: degree of them along axis a, degree +
   /// 1 along the others, first axis fastest; Dim x as many.
   std::array<ControlPoints<Dim>, Dim> columns(int patch) const;
+  std::array<int, Dim> column_degrees(int axis) const;
 
   TensorLattice<Dim> lattice_;
   int degree_;

@@ -235,10 +235,11 @@ TEST(InvertibilityCertificate, BothSidesOfACreaseCount) {
 /// folds at a sample eight times finer than its mesh, and nearly all that do not fold are certified.
 TEST(InvertibilityCertificate, CertifiesMapsThatDoNotFoldAndNoOthers) {
   int unfolded = 0, certified = 0, count = 0;
-  const auto judge = [&](const std::string& name, const auto& family, double target) {
+  const auto judge = [&]<int Dim>(const std::string& name,
+                                  const testing::FoldingFamily<Dim>& family, double target) {
     const auto transform = family.scaled_to(target);
     const auto certificate = certify_invertibility(transform);
-    const double least = family.least_determinant(transform);
+    double least = family.least_determinant(transform);
     ++count;
     if (certificate.certified()) {
       EXPECT_GT(least, 0) << name << ", target " << target;
@@ -246,7 +247,15 @@ TEST(InvertibilityCertificate, CertifiesMapsThatDoNotFoldAndNoOthers) {
       EXPECT_GT(family.least_on_grid(transform), 0) << name << ", target " << target;
     } else {
       EXPECT_NE(certificate.verdict, Invertibility::kNotCertifiable);
-      EXPECT_TRUE(certificate.failing.has_value());
+      ASSERT_TRUE(certificate.failing.has_value());
+      // Sampling may miss what the certificate found; the map itself is asked, just inside of the cell's part.
+      const auto& region = *certificate.failing;
+      Point<Dim> inside = Point<Dim>::Zero();
+      for (const auto& corner : region.corners) inside += corner / region.corners.size();
+      const Point<Dim> x = region.at + 1e-6 * (inside - region.at);
+      if (transform.basis().contains(x)) {
+        least = std::min(least, transform.spatial_jacobian(x).determinant());
+      }
     }
     if (least > 0) {
       ++unfolded;

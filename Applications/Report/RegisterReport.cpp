@@ -173,6 +173,9 @@ ReportHead head_of(const RegisterStory<Dim>& story) {
   head.command = "crease register";
   head.title = file_name(story.options.moving.front()) + " registered to " +
                file_name(story.options.fixed.front());
+  if (const std::size_t channels = story.options.num_channels(); channels > 1) {
+    head.title += fmt::format(", with {} further channel{}", channels - 1, channels > 2 ? "s" : "");
+  }
   head.status = status_of(story.result.at("status"));
   head.verdict = {match_statement(story)};
   for (const auto& statement : fold_statements(story)) head.verdict.push_back(statement);
@@ -239,6 +242,20 @@ ReportPlot energy_plot(const std::vector<LevelReport>& levels,
   return plot;
 }
 
+void add_channels(const std::vector<ChannelReport>& channels, HtmlReport& report) {
+  if (channels.size() < 2) return;
+  ReportTable table{.title = "Channels, compared at once",
+                    .columns = {"channel", "metric", "weight", "before", "after"},
+                    .numbers = {2, 3, 4},
+                    .note = "Differences are of the first channel; Compare shows all."};
+  for (const ChannelReport& channel : channels) {
+    table.rows.push_back({std::to_string(table.rows.size() + 1), channel.name,
+                          short_text(channel.weight), short_text(channel.before),
+                          short_text(channel.after)});
+  }
+  report.add_table(table);
+}
+
 void add_refinement(const std::vector<RefinementRound>& rounds, HtmlReport& report) {
   if (rounds.empty()) return;
   ReportTable table{
@@ -258,6 +275,7 @@ template <int Dim>
 void add_optimisation(const RegisterStory<Dim>& story, HtmlReport& report) {
   const auto& outcome = story.outcome;
   report.begin_section("optimisation", "Optimisation");
+  add_channels(outcome.channels, report);
   if (!story.options.is_spline()) {
     report.add_text("This transform is found by a search, not by levels of iterations: " +
                     outcome.stopped_because + ".");

@@ -9,19 +9,14 @@
 
 #include "Applications/Report/ReportPlaces.h"
 #include "Images/IntensityRange.h"
+#include "Images/RasterCheck.h"
 #include "Registration/PicturesLines.h"
 
 namespace crease {
 namespace {
 
+constexpr int kLayers = 8;  // of a page, further channels apart
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
-
-template <int Dim>
-bool same_raster(const Raster<Dim>& a, const Raster<Dim>& b) {
-  constexpr double kShare = 1e-6;  // of a pixel
-  return a.size == b.size && (a.origin - b.origin).norm() < kShare * a.spacing.minCoeff() &&
-         (a.index_to_point() - b.index_to_point()).norm() < kShare * a.spacing.minCoeff();
-}
 
 /// Pixels from the 1 % to the 99 % percentile, as in the pictures.
 template <int Dim>
@@ -109,9 +104,10 @@ RegisterStacks<Dim>::RegisterStacks(const RegisterOptions& options, const Regist
       input_(input),
       outcome_(outcome),
       images_(images),
-      fixed_(input.fixed.image.raster()) {
+      fixed_(input.fixed.image.raster(),
+             kLayers + 2 * static_cast<int>(images.further_warped.size())) {
   if (!same_raster(fixed_.raster, input.moving.image.raster())) {
-    moving_.emplace(input.moving.image.raster());
+    moving_.emplace(input.moving.image.raster(), kLayers);
   }
   add_images();
   if (options.expects_equal_intensities()) add_differences();
@@ -149,8 +145,15 @@ void RegisterStacks<Dim>::add_images() {
   const ReportScale moving =
       options_.expects_equal_intensities() ? fixed : window(input_.moving.image);
   greys_ = {add_layer(fixed_, "fixed", fixed, samples_of(input_.fixed.image)),
-            add_layer(fixed_, "moving, before", moving, samples_of(images_.before)),
-            add_layer(fixed_, "warped", moving, samples_of(images_.warped))};
+            add_layer(fixed_, "warped", moving, samples_of(images_.warped)),
+            add_layer(fixed_, "moving, before", moving, samples_of(images_.before))};
+  for (std::size_t c = 0; c < images_.further_warped.size(); ++c) {
+    const std::string channel = fmt::format(", channel {}", c + 2);
+    const Image<float, Dim>& other = input_.further_fixed[c].image;
+    greys_.push_back(add_layer(fixed_, "fixed" + channel, window(other), samples_of(other)));
+    greys_.push_back(add_layer(fixed_, "warped" + channel, window(input_.further_moving[c].image),
+                               samples_of(images_.further_warped[c])));
+  }
 }
 
 template <int Dim>
@@ -268,7 +271,7 @@ void RegisterStacks<Dim>::add_deformation() {
   Stack& stack = moving_ ? *moving_ : fixed_;
   deformed_layer_ = moving_ ? add_layer(stack, "moving", window(input_.moving.image),
                                         samples_of(input_.moving.image))
-                            : greys_[1];
+                            : greys_[2];
   deformed_overlays_ = {add_overlay(stack, "deformed grid", ReportOverlay::Look::kGrid,
                                     [this, &stack](auto& overlay) { draw_grid(stack, overlay); })};
   const PointMap<Dim> map = [this](const Point<Dim>& x) { return outcome_.transform->map(x); };

@@ -32,7 +32,7 @@ class RegisterStacks {
   using SamplesOfSlice = typename ReportPlanes<Dim>::SamplesOfSlice;
   static constexpr int kFixedStack = 0, kMovingStack = 1;
   struct Stack {
-    explicit Stack(const Raster<Dim>& on) : raster(on), planes(on) {
+    Stack(const Raster<Dim>& on, int num_layers) : raster(on), planes(on, num_layers) {
       shown.planes = planes.planes();
       shown.note = planes.note();
     }

@@ -110,7 +110,7 @@ struct ReportPlace {
 /// A window on a stack.
 struct ReportViewer {
   enum class Kind {
-    kCompare,  ///< any two of the layers: swipe, flicker, blend, checkerboard
+    kCompare,  ///< any two of the layers, the first two at first: swipe, flicker, blend, checkerboard
     kMaps      ///< layers side by side with colour bars
   };
   Kind kind = Kind::kMaps;

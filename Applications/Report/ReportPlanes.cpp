@@ -11,8 +11,8 @@
 namespace crease {
 namespace {
 
-/// Per layer. A page has up to eight layers; a pixel takes a byte at most, and a third more in the page.
-constexpr double kMostPixels = 1.1e6;
+/// Of all layers: a pixel takes a byte at most, and a third more in the page.
+constexpr double kMostPixels = 8.8e6;
 constexpr int kLongestSide = 256;  // pixels of a volume's slices
 constexpr int kFewSlices = 20;     // per plane: rather smaller pixels than fewer slices
 
@@ -23,8 +23,8 @@ struct Reduction {
   int slices = 1;
 };
 
-Reduction<2> reduction(const std::array<int, 2>& size) {
-  const double shrink = std::min(1.0, std::sqrt(kMostPixels / size[0] / size[1]));
+Reduction<2> reduction(const std::array<int, 2>& size, double most_pixels) {
+  const double shrink = std::min(1.0, std::sqrt(most_pixels / size[0] / size[1]));
   const auto side = [&](int samples) {
     return std::max(1, static_cast<int>(std::floor(samples * shrink)));
   };
@@ -40,7 +40,7 @@ double num_pixels(const std::array<int, 3>& size, const Reduction<3>& shown) {
   return sum;
 }
 
-Reduction<3> reduction(const std::array<int, 3>& size) {
+Reduction<3> reduction(const std::array<int, 3>& size, double most_pixels) {
   Reduction<3> shown{{}, *std::ranges::max_element(size)};
   const auto set_sides = [&](double longest) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -48,8 +48,8 @@ Reduction<3> reduction(const std::array<int, 3>& size) {
   };
   double longest = kLongestSide;
   set_sides(longest);
-  while (shown.slices > kFewSlices && num_pixels(size, shown) > kMostPixels) --shown.slices;
-  while (num_pixels(size, shown) > kMostPixels) set_sides(longest *= 0.98);
+  while (shown.slices > kFewSlices && num_pixels(size, shown) > most_pixels) --shown.slices;
+  while (num_pixels(size, shown) > most_pixels) set_sides(longest *= 0.98);
   return shown;
 }
 
@@ -90,8 +90,8 @@ std::vector<std::uint8_t> reduced(const Image<float, 2>& plane, int width, int h
 }  // namespace
 
 template <int Dim>
-ReportPlanes<Dim>::ReportPlanes(const Raster<Dim>& raster) : raster_(raster) {
-  const auto shown = reduction(raster.size);
+ReportPlanes<Dim>::ReportPlanes(const Raster<Dim>& raster, int num_layers) : raster_(raster) {
+  const auto shown = reduction(raster.size, kMostPixels / num_layers);
   for (Slice<Dim> slice : crease::slices(raster)) {
     slice.width = shown.sides[static_cast<std::size_t>(slice.first)];
     slice.height = shown.sides[static_cast<std::size_t>(slice.second)];

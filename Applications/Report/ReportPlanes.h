@@ -25,7 +25,8 @@ class ReportPlanes {
     Point<2> pixel = Point<2>::Zero();
   };
 
-  explicit ReportPlanes(const Raster<Dim>& raster);
+  /// @param num_layers  of the page.
+  explicit ReportPlanes(const Raster<Dim>& raster, int num_layers = 8);
 
   std::vector<ReportPlane> planes() const;
   int num_planes() const { return static_cast<int>(slices_.size()); }

@@ -406,7 +406,7 @@
   class Compare extends Viewer {
     constructor(figure, about) {
       super(figure, about);
-      this.layers = [about.layers[0], about.layers[about.layers.length - 1]];
+      this.layers = about.layers.slice(0, 2);
       this.mode = 'swipe';
       this.front = false;  // of flicker: whether the second layer shows
       const sheet = new Sheet(this.stack, 2, `${about.title}. Arrow keys move the divider, space flickers.`);

@@ -46,6 +46,10 @@ TEST_F(RegisterChannels, AreReportedAndWarpedEach) {
   const auto at = std::array{30, 30};
   EXPECT_NEAR(two[at], 5 - 2 * one[at], 1e-4);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/warped-3.mha"));
+  const std::string page = testing::read_text(folder / "out/report.html");
+  for (const char* text : {"with 1 further channel", "warped, channel 2", "Channels, compared"}) {
+    EXPECT_THAT(page, ::testing::HasSubstr(text));
+  }
 
   // What is written down repeats the run.
   const auto again =

@@ -2,7 +2,9 @@
 
 #include <limits>
 
+#include "Transforms/Splines/NurbsBasis.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
+#include "Transforms/Splines/TSplineBasis.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
@@ -17,6 +19,11 @@ Json point_list(const Point<Dim>& values) {
 }
 
 template <int Dim>
+Json columns(const Matrix<Dim>& direction) {
+  return std::vector<double>(direction.data(), direction.data() + Dim * Dim);
+}
+
+template <int Dim>
 Json tensor_to_json(const TensorBSplineBasis<Dim>& basis) {
   const auto& lattice = basis.lattice();
   return {{"kind", "tensor"},
@@ -24,8 +31,7 @@ Json tensor_to_json(const TensorBSplineBasis<Dim>& basis) {
           {"spans", lattice.spans},
           {"origin", point_list<Dim>(lattice.origin)},
           {"spacing", point_list<Dim>(lattice.spacing)},
-          {"direction_columns",
-           std::vector<double>(lattice.direction.data(), lattice.direction.data() + Dim * Dim)}};
+          {"direction_columns", columns<Dim>(lattice.direction)}};
 }
 
 template <int Dim>
@@ -184,6 +190,78 @@ std::shared_ptr<const SplineBasis<2>> powell_sabin_from_json(const JsonReader& r
   return std::make_shared<PowellSabinBasis>(std::move(net));
 }
 
+std::vector<double> number_list(const JsonReader& reader) {
+  const Eigen::RowVectorXd numbers =
+      reader.numbers<1, Eigen::Dynamic>(static_cast<Eigen::Index>(reader.size()));
+  return {numbers.begin(), numbers.end()};
+}
+
+template <int Dim>
+Json nurbs_to_json(const NurbsBasis<Dim>& basis) {
+  const auto& net = basis.net();
+  Json knots = Json::array();
+  for (const auto& axis : net.knots) knots.push_back(axis);
+  Json weights = Json::array();  // none: all equal
+  if (basis.is_rational()) {
+    for (double w : net.weights) weights.push_back(w);
+  }
+  return {{"kind", "nurbs"},
+          {"degree", net.degree},
+          {"knots", knots},
+          {"weights", weights},
+          {"affine_maps", basis.reproduces_affine_maps()},
+          {"origin", point_list<Dim>(net.origin)},
+          {"direction_columns", columns<Dim>(net.direction)}};
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> nurbs_from_json(const JsonReader& reader) {
+  NurbsNet<Dim> net;
+  net.degree = reader.at("degree").integer(1, kMaxTensorDegree);
+  const JsonReader knots = reader.at("knots");
+  if (knots.size() != Dim) knots.fail_here(message("does not have ", Dim, " lists"));
+  for (int a = 0; a < Dim; ++a) {
+    net.knots[a] = number_list(knots.at(static_cast<std::size_t>(a)));
+  }
+  const auto weights = number_list(reader.at("weights"));
+  net.weights = Eigen::Map<const Eigen::VectorXd>(weights.data(), std::ssize(weights));
+  net.origin = reader.at("origin").template numbers<Dim>();
+  net.direction = reader.at("direction_columns").template numbers<Dim, Dim>();
+  return std::make_shared<NurbsBasis<Dim>>(std::move(net), reader.at("affine_maps").flag()
+                                                               ? AffineMaps::kRequired
+                                                               : AffineMaps::kNotNeeded);
+}
+
+Json tspline_to_json(const TSplineBasis& basis) {
+  Json segments = Json::array();  // axis, line, begin, end
+  for (const TSegment& s : basis.mesh().segments()) {
+    segments.push_back({s.axis, s.line, s.begin, s.end});
+  }
+  return {{"kind", "tspline"},
+          {"degree", basis.degree()},
+          {"lines", {basis.mesh().lines(0), basis.mesh().lines(1)}},
+          {"segments", segments},
+          {"origin", point_list<2>(basis.box().origin)},
+          {"direction_columns", columns<2>(basis.box().direction)}};
+}
+
+std::shared_ptr<const SplineBasis<2>> tspline_from_json(const JsonReader& reader) {
+  const JsonReader lines = reader.at("lines"), segments = reader.at("segments");
+  if (lines.size() != 2) lines.fail_here("does not have 2 lists");
+  std::vector<TSegment> edges;
+  constexpr int kMost = std::numeric_limits<int>::max();
+  for (std::size_t n = 0; n < segments.size(); ++n) {
+    const JsonReader segment = segments.at(n);
+    if (segment.size() != 4) segment.fail_here("does not have 4 numbers");
+    edges.push_back({segment.at(0).integer(0, 1), segment.at(1).integer(0, kMost),
+                     segment.at(2).integer(0, kMost), segment.at(3).integer(0, kMost)});
+  }
+  TMesh mesh(reader.at("degree").integer(1, kMaxTensorDegree),
+             {number_list(lines.at(0)), number_list(lines.at(1))}, edges);
+  return std::make_shared<TSplineBasis>(std::move(mesh), reader.at("origin").numbers<2>(),
+                                        reader.at("direction_columns").numbers<2, 2>());
+}
+
 }  // namespace
 
 template <int Dim>
@@ -194,9 +272,15 @@ nlohmann::json basis_to_json(const SplineBasis<Dim>& basis) {
   if (const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis)) {
     return triangular_to_json(triangular->net());
   }
+  if (const auto* nurbs = dynamic_cast<const NurbsBasis<Dim>*>(&basis)) {
+    return nurbs_to_json(*nurbs);
+  }
   if constexpr (Dim == 2) {
     if (const auto* powell_sabin = dynamic_cast<const PowellSabinBasis*>(&basis)) {
       return powell_sabin_to_json(powell_sabin->net());
+    }
+    if (const auto* tspline = dynamic_cast<const TSplineBasis*>(&basis)) {
+      return tspline_to_json(*tspline);
     }
   }
   throw InvalidInput("save_transform: splines of this kind cannot be written to a file.");
@@ -207,8 +291,10 @@ std::shared_ptr<const SplineBasis<Dim>> basis_from_json(const JsonReader& reader
   const std::string kind = reader.at("kind").text();
   if (kind == "tensor") return tensor_from_json<Dim>(reader);
   if (kind == "triangular") return triangular_from_json<Dim>(reader);
+  if (kind == "nurbs") return nurbs_from_json<Dim>(reader);
   if constexpr (Dim == 2) {
     if (kind == "powell-sabin") return powell_sabin_from_json(reader);
+    if (kind == "tspline") return tspline_from_json(reader);
   }
   reader.fail(message("the spline kind \"", kind, "\" is unknown"));
 }

@@ -5,7 +5,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
-#include "Testing/Transforms/SampleSplines.h"
+#include "Testing/Transforms/SampleNurbs.h"
 #include "Transforms/Domains/StructuredTriangulation.h"
 #include "Transforms/SparseRowGrid.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
@@ -33,14 +33,14 @@ Raster<Dim> raster_over(const TensorLattice<Dim>& lattice) {
 template <int Dim, int Degree, bool Separable>
 struct Kind {
   static constexpr int kDim = Dim;
-  static std::shared_ptr<const SplineBasis<Dim>> basis() {
+  static std::shared_ptr<const SplineBasis<Dim>> make() {
     return testing::small_basis<Dim>(Degree);
   }
   static std::unique_ptr<BoundGrid<Dim>> bind(const SplineBasis<Dim>& basis,
                                               const Raster<Dim>& raster) {
     if (Separable) {
-      const auto& lattice = dynamic_cast<const TensorBSplineBasis<Dim>&>(basis).lattice();
-      return std::make_unique<TensorBSplineGrid<Dim>>(lattice, Degree, raster);
+      return std::make_unique<TensorBSplineGrid<Dim>>(testing::small_lattice<Dim>(), Degree,
+                                                      raster);
     }
     return std::make_unique<SparseRowGrid<Dim>>(basis, raster);
   }
@@ -50,7 +50,7 @@ struct Kind {
 template <bool Own>
 struct PowellSabinKind {
   static constexpr int kDim = 2;
-  static std::shared_ptr<const SplineBasis<2>> basis() {
+  static std::shared_ptr<const SplineBasis<2>> make() {
     const auto lattice = testing::small_lattice<2>();
     Box<2> box;
     box.add({0, 0});
@@ -65,13 +65,47 @@ struct PowellSabinKind {
   }
 };
 
+/// As the basis binds itself.
+template <int Dim>
+struct Bound {
+  static constexpr int kDim = Dim;
+  static std::unique_ptr<BoundGrid<Dim>> bind(const SplineBasis<Dim>& basis,
+                                              const Raster<Dim>& raster) {
+    return basis.bind(raster);
+  }
+};
+
+template <int Dim, int Degree, bool Rational>
+struct Nurbs : Bound<Dim> {
+  static std::shared_ptr<const SplineBasis<Dim>> make() {
+    const auto lattice = testing::small_lattice<Dim>();
+    return std::make_shared<NurbsBasis<Dim>>(Rational ? testing::rational_net<Dim>(lattice, Degree)
+                                                      : testing::nurbs_net<Dim>(lattice, Degree));
+  }
+};
+
+/// A rational one by tables.
+template <int Dim>
+struct NurbsTables : Nurbs<Dim, 3, true> {
+  static std::unique_ptr<BoundGrid<Dim>> bind(const SplineBasis<Dim>& basis,
+                                              const Raster<Dim>& raster) {
+    return std::make_unique<SparseRowGrid<Dim>>(basis, raster);
+  }
+};
+
+struct TSpline : Bound<2> {
+  static std::shared_ptr<const SplineBasis<2>> make() {
+    return testing::tspline(testing::small_lattice<2>(), 3);
+  }
+};
+
 }  // namespace
 
 template <typename T>
 class BoundGridSuite : public ::testing::Test {
  public:
   static constexpr int kDim = T::kDim;
-  std::shared_ptr<const SplineBasis<kDim>> basis = T::basis();
+  std::shared_ptr<const SplineBasis<kDim>> basis = T::make();
   Raster<kDim> raster = raster_over<kDim>(testing::small_lattice<kDim>());
   std::unique_ptr<BoundGrid<kDim>> grid = T::bind(*basis, raster);
   ControlPoints<kDim> phi = testing::Numbers(2).columns<kDim>(basis->num_control_points(), 3.0);
@@ -115,10 +149,11 @@ class BoundGridSuite : public ::testing::Test {
   }
 };
 
-using Kinds =
-    ::testing::Types<Kind<2, 1, true>, Kind<2, 2, true>, Kind<2, 3, true>, Kind<2, 4, true>,
-                     Kind<2, 5, true>, Kind<3, 1, true>, Kind<3, 3, true>, Kind<2, 3, false>,
-                     Kind<3, 2, false>, PowellSabinKind<false>, PowellSabinKind<true>>;
+using Kinds = ::testing::Types<Kind<2, 1, true>, Kind<2, 2, true>, Kind<2, 3, true>,
+                               Kind<2, 4, true>, Kind<2, 5, true>, Kind<3, 1, true>,
+                               Kind<3, 3, true>, Kind<2, 3, false>, Kind<3, 2, false>,
+                               PowellSabinKind<false>, PowellSabinKind<true>, Nurbs<2, 3, false>,
+                               Nurbs<2, 3, true>, Nurbs<3, 2, true>, NurbsTables<2>, TSpline>;
 TYPED_TEST_SUITE(BoundGridSuite, Kinds);
 
 TYPED_TEST(BoundGridSuite, CoversTheSamplesOfTheDomain) {
@@ -284,6 +319,14 @@ TEST(TensorBSplineGrid, IsChosenForAlignedRastersOnly) {
   EXPECT_THROW(TensorBSplineGrid<2>(basis->lattice(), 3, raster), InvalidInput);
 }
 
+TEST(TensorBSplineGrid, IsChosenForNurbsToo) {
+  const NurbsBasis<2> basis(testing::rational_net<2>(testing::small_lattice<2>(), 3));
+  auto raster = raster_over<2>(testing::small_lattice<2>());
+  EXPECT_NE(dynamic_cast<TensorBSplineGrid<2>*>(basis.bind(raster).get()), nullptr);
+  raster.direction = testing::turned<2>(0.31);
+  EXPECT_NE(dynamic_cast<SparseRowGrid<2>*>(basis.bind(raster).get()), nullptr);
+}
+
 TEST(TensorBSplineGrid, CoversNothingOfARasterElsewhere) {
   const auto basis = testing::small_basis<2>();
   auto raster = raster_over<2>(basis->lattice());
@@ -312,7 +355,7 @@ TEST(TensorBSplineKernels, AgreeOnBothInstructionSets) {
   }
   const Eigen::MatrixXd polynomials = numbers.columns<4>(4);
   const Eigen::VectorXd net = numbers.columns<1>(6).transpose();
-  const TensorRowPlan plan{3, 6, runs.data(), 3, local.data(), polynomials.data()};
+  const TensorRowPlan plan{3, 6, runs.data(), 3, local.data(), polynomials.data(), 0};
   const double* rows[] = {net.data()};
   const double weights[] = {0.7};
   std::vector<double> sums(6);

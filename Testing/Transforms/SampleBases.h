@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Testing/Transforms/Domains/SampleDomains.h"
+#include "Testing/Transforms/SampleNurbs.h"
 #include "Transforms/Domains/KnotPlacement.h"
 #include "Transforms/Domains/Mesher.h"
 #include "Transforms/Domains/TetrahedronKnots.h"
@@ -25,12 +26,17 @@ struct SampleBasis {
 };
 
 template <int Dim>
-std::shared_ptr<const SplineBasis<Dim>> tensor_over(const Box<Dim>& box, int spans, int degree) {
+TensorLattice<Dim> lattice_over(const Box<Dim>& box, int spans) {
   TensorLattice<Dim> lattice;
   lattice.spans.fill(spans);
   lattice.spacing = box.size() / spans;
   lattice.origin = box.lower;
-  return std::make_shared<TensorBSplineBasis<Dim>>(lattice, degree);
+  return lattice;
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> tensor_over(const Box<Dim>& box, int spans, int degree) {
+  return std::make_shared<TensorBSplineBasis<Dim>>(lattice_over<Dim>(box, spans), degree);
 }
 
 /// 4 x 4 cells of two triangles.
@@ -83,6 +89,11 @@ template <int Dim>
 std::vector<SampleBasis<Dim>> sample_bases(const Box<Dim>& box) {
   std::vector<SampleBasis<Dim>> bases = {{"tensor, quadratic", tensor_over<Dim>(box, 3, 2)},
                                          {"tensor, cubic", tensor_over<Dim>(box, 3, 3)}};
+  const auto lattice = lattice_over<Dim>(box, 3);
+  bases.push_back(
+      {"NURBS, equal weights", std::make_shared<NurbsBasis<Dim>>(nurbs_net<Dim>(lattice, 2))});
+  bases.push_back(
+      {"NURBS, rational", std::make_shared<NurbsBasis<Dim>>(rational_net<Dim>(lattice, 2, 0.2))});
   if constexpr (Dim == 2) {
     bases.push_back({"triangles, quadratic", triangles_over(box, {.degree = 2})});
     bases.push_back({"triangles, cubic", triangles_over(box, {.degree = 3})});
@@ -93,6 +104,9 @@ std::vector<SampleBasis<Dim>> sample_bases(const Box<Dim>& box) {
         {"Powell-Sabin", std::make_shared<PowellSabinBasis>(structured_triangulation(box, 4, 3))});
     bases.push_back({"creased Powell-Sabin",
                      std::make_shared<PowellSabinBasis>(place_powell_sabin(round_body_over(box)))});
+    bases.push_back({"NURBS, rational cubic",
+                     std::make_shared<NurbsBasis<2>>(rational_net<2>(lattice_over<2>(box, 4), 3))});
+    bases.push_back({"T-spline, cubic", tspline(lattice_over<2>(box, 5), 3)});
   } else {
     bases.push_back({"tetrahedra, quadratic",
                      std::make_shared<TriangularBSplineBasis<3>>(

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "Core/Error.h"
-#include "Testing/Transforms/SampleSplines.h"
+#include "Testing/Transforms/SampleNurbs.h"
 #include "Testing/Transforms/Splines/TestNets.h"
 #include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/RigidTransform.h"
@@ -159,6 +159,56 @@ TEST_F(TransformFile, KeepsTheWholePowellSabinNet) {
   save();
   change("\"simplices\": [", "\"simplices\": [[0, 1, 2],");
   expect_error("does not have one number per simplex");
+}
+
+TEST_F(TransformFile, KeepsTheWholeNurbsNet) {
+  const auto net = testing::rational_net<2>(testing::small_lattice<2>(), 3);
+  save_transform(SplineTransform<2>(std::make_shared<NurbsBasis<2>>(net)), file());
+  const auto loaded = load_transform<2>(file());
+  const auto& again =
+      dynamic_cast<const NurbsBasis<2>&>(dynamic_cast<const SplineTransform<2>&>(*loaded).basis())
+          .net();
+  EXPECT_EQ(again.degree, net.degree);
+  EXPECT_EQ(again.knots, net.knots);
+  EXPECT_EQ(again.weights, net.weights);
+  EXPECT_EQ(again.origin, net.origin);
+  EXPECT_EQ(again.direction, net.direction);
+
+  change("\"affine_maps\": true", "\"affine_maps\": 1");
+  expect_error("\"basis.affine_maps\" is not true or false");
+  save_transform(SplineTransform<2>(std::make_shared<NurbsBasis<2>>(net)), file());
+  change("\"weights\": [", "\"weights\": [ 7.5,");
+  expect_error("weights given for");
+  save_transform(SplineTransform<2>(std::make_shared<NurbsBasis<2>>(net)), file());
+  change("\"weights\": [", "\"weights\": [ {},");
+  expect_error("\"basis.weights[0]\" is not a number");
+  save_transform(SplineTransform<2>(std::make_shared<NurbsBasis<2>>(net)), file());
+  change("\"knots\": [", "\"knots\": [ [],");
+  expect_error("\"basis.knots\" does not have 2 lists");
+}
+
+TEST_F(TransformFile, KeepsTheWholeTMesh) {
+  const auto basis = testing::tspline(testing::small_lattice<2>(), 3);
+  const auto save = [&] { save_transform(SplineTransform<2>(basis), file()); };
+  save();
+  const auto loaded = load_transform<2>(file());
+  const auto& again =
+      dynamic_cast<const TSplineBasis&>(dynamic_cast<const SplineTransform<2>&>(*loaded).basis());
+  EXPECT_EQ(again.mesh(), basis->mesh());
+  EXPECT_EQ(again.box().origin, basis->box().origin);
+  EXPECT_EQ(again.box().direction, basis->box().direction);
+
+  change("\"segments\": [", "\"segments\": [ [2, 0, 0, 1],");
+  expect_error("\"basis.segments[0][0]\" is 2");
+  save();
+  change("\"segments\": [", "\"segments\": [ [0, 0, 1],");
+  expect_error("\"basis.segments[0]\" does not have 4 numbers");
+  save();
+  change("\"segments\": [", "\"segments\": [ [0, 4, 2, 999],");
+  expect_error("does not lie on the lines");
+  save();
+  change("\"lines\"", "\"Lines\"");
+  expect_error("\"basis.lines\" is missing");
 }
 
 TEST_F(TransformFile, PeekTellsDimensionsAndType) {

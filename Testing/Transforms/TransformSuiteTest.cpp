@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "Core/Error.h"
-#include "Testing/Transforms/SampleSplines.h"
+#include "Testing/Transforms/SampleNurbs.h"
 #include "Testing/Transforms/Splines/TestNets.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
@@ -76,6 +76,24 @@ struct PowellSabinSpline {
   }
 };
 
+template <int Dim, int Degree>
+struct Nurbs {
+  static constexpr int kIn = Dim, kOut = Dim;
+  static std::unique_ptr<Transform<Dim>> make() {
+    return std::make_unique<SplineTransform<Dim>>(std::make_shared<NurbsBasis<Dim>>(
+        testing::rational_net<Dim>(testing::small_lattice<Dim>(), Degree)));
+  }
+};
+
+template <int Degree>
+struct TSpline {
+  static constexpr int kIn = 2, kOut = 2;
+  static std::unique_ptr<Transform<2>> make() {
+    return std::make_unique<SplineTransform<2>>(
+        testing::tspline(testing::small_lattice<2>(), Degree));
+  }
+};
+
 struct TensorShell {
   static constexpr int kIn = 2, kOut = 3;
   static std::unique_ptr<Transform<2, 3>> make() {
@@ -133,6 +151,7 @@ class TransformSuite : public ::testing::Test {
 using Kinds = ::testing::Types<Affine<2>, Affine<3>, Rigid<2>, Rigid<3>, TensorSpline<2, 2>,
                                TensorSpline<2, 3>, TensorSpline<2, 5>, TensorSpline<3, 3>,
                                TriangularSpline<2>, TriangularSpline<3>, PowellSabinSpline,
+                               Nurbs<2, 2>, Nurbs<2, 3>, Nurbs<3, 3>, TSpline<3>, TSpline<5>,
                                TensorShell, Field<2>, Field<3>, Composite<2>, Composite<3>>;
 TYPED_TEST_SUITE(TransformSuite, Kinds);
 

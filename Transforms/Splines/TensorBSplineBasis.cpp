@@ -8,6 +8,7 @@
 #include "Transforms/SparseRowGrid.h"
 #include "Transforms/Splines/TensorBSplineGrid.h"
 #include "Transforms/Splines/TensorBSplinePieces.h"
+#include "Transforms/Splines/TensorIndex.h"
 
 namespace crease {
 namespace {
@@ -39,31 +40,6 @@ const TensorLattice<Dim>& checked(const TensorLattice<Dim>& lattice, int degree)
         "TensorBSplineBasis: the origin must be finite and the direction orthonormal.");
   }
   return lattice;
-}
-
-/// The numbers 0 .. product of size - 1 as index tuples, first axis fastest.
-template <int Dim>
-std::array<int, Dim> unravel(int number, const std::array<int, Dim>& size) {
-  std::array<int, Dim> index;
-  for (int a = 0; a < Dim; ++a) {
-    index[a] = number % size[a];
-    number /= size[a];
-  }
-  return index;
-}
-
-template <int Dim>
-int ravel(const std::array<int, Dim>& index, const std::array<int, Dim>& size) {
-  int number = index[Dim - 1];
-  for (int a = Dim - 2; a >= 0; --a) number = number * size[a] + index[a];
-  return number;
-}
-
-template <int Dim>
-int product(const std::array<int, Dim>& size) {
-  int n = 1;
-  for (int s : size) n *= s;
-  return n;
 }
 
 /// The element of the span at the lattice's origin; all others are its translations.

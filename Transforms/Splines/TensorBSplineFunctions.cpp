@@ -22,20 +22,25 @@ Across across(const BSplineSegment& y, int j, const BSplineSegment& z, int k) {
 }  // namespace
 
 template <int Dim>
-TensorBSplineFunctions<Dim>::TensorBSplineFunctions(const TensorLattice<Dim>& lattice, int degree)
-    : degree_(degree), to_space_(lattice.direction * lattice.spacing.cwiseInverse().asDiagonal()) {
-  // H_x = P H_t P^T, written for the distinct entries.
-  const auto& p = to_space_;
+Matrix<kNumSecondDerivatives<Dim>> second_derivatives_transform(const Matrix<Dim>& p) {
+  Matrix<kNumSecondDerivatives<Dim>> result;
   for (int a = 0, row = 0; a < Dim; ++a) {
     for (int b = a; b < Dim; ++b, ++row) {
       for (int c = 0, column = 0; c < Dim; ++c) {
         for (int d = c; d < Dim; ++d, ++column) {
-          second_to_space_(row, column) = p(a, c) * p(b, d) + (c == d ? 0.0 : p(a, d) * p(b, c));
+          result(row, column) = p(a, c) * p(b, d) + (c == d ? 0.0 : p(a, d) * p(b, c));
         }
       }
     }
   }
+  return result;
 }
+
+template <int Dim>
+TensorBSplineFunctions<Dim>::TensorBSplineFunctions(const TensorLattice<Dim>& lattice, int degree)
+    : degree_(degree),
+      to_space_(lattice.direction * lattice.spacing.cwiseInverse().asDiagonal()),
+      second_to_space_(second_derivatives_transform<Dim>(to_space_)) {}
 
 template <int Dim>
 int TensorBSplineFunctions<Dim>::count() const {
@@ -48,6 +53,12 @@ void TensorBSplineFunctions<Dim>::evaluate(const Vector<Dim>& local, int derivat
                                            BasisValues<Dim>& result) const {
   std::array<BSplineSegment, Dim> axis;
   for (int a = 0; a < Dim; ++a) axis[a] = bspline_segment(degree_, local[a], derivatives);
+  multiply(axis, derivatives, result);
+}
+
+template <int Dim>
+void TensorBSplineFunctions<Dim>::multiply(const std::array<BSplineSegment, Dim>& axis,
+                                           int derivatives, BasisValues<Dim>& result) const {
   result.values.resize(count());
   if (derivatives > 0) result.gradients.resize(Dim, count());
   if (derivatives > 1) result.hessians.resize(kNumSecondDerivatives<Dim>, count());
@@ -85,6 +96,8 @@ void TensorBSplineFunctions<Dim>::evaluate(const Vector<Dim>& local, int derivat
   }
 }
 
+template Matrix<3> second_derivatives_transform(const Matrix<2>&);
+template Matrix<6> second_derivatives_transform(const Matrix<3>&);
 template class TensorBSplineFunctions<2>;
 template class TensorBSplineFunctions<3>;
 

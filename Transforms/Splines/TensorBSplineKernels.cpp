@@ -36,10 +36,11 @@ void map_runs(const TensorRowPlan& plan, const double* sums, float* out) {
   for (int n = 0; n < plan.num_runs; ++n) {
     const TensorRun& run = plan.runs[n];
     const double* c = sums + run.span;
+    const double* polynomials = plan.polynomials + run.span * plan.polynomials_per_span;
     Floats coefficient[Degree + 1];
     for (int t = 0; t <= Degree; ++t) {
       double sum = 0;
-      for (int r = 0; r <= Degree; ++r) sum += plan.polynomials[t * (Degree + 1) + r] * c[r];
+      for (int r = 0; r <= Degree; ++r) sum += polynomials[t * (Degree + 1) + r] * c[r];
       coefficient[t] = Floats{} + static_cast<float>(sum);
     }
     // The last vector reaches into the next run, which overwrites it.
@@ -74,9 +75,10 @@ void adjoint_runs(const TensorRowPlan& plan, const float* force, double* sums) {
       for (int k = 0; k < 4; ++k) total[t + k] = quad[k];
     }
     double* c = sums + run.span;
+    const double* polynomials = plan.polynomials + run.span * plan.polynomials_per_span;
     for (int t = 0; t <= Degree; ++t) {
       for (int r = 0; r <= Degree; ++r) {
-        c[r] += plan.polynomials[t * (Degree + 1) + r] * static_cast<double>(total[t]);
+        c[r] += polynomials[t * (Degree + 1) + r] * static_cast<double>(total[t]);
       }
     }
   }

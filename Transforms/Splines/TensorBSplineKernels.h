@@ -17,6 +17,7 @@ struct TensorRowPlan {
   int num_runs;
   const float* local;  ///< per sample s - 1/2, s in [0, 1] within its span; 8 entries of padding
   const double* polynomials;  ///< [power of s - 1/2][function of the span], (degree + 1)^2
+  int polynomials_per_span;   ///< step from span to span in `polynomials`; 0: all spans are alike
 };
 
 // A row's control points along the first axis are weighted sums of `num_rows` rows of the net (the

@@ -1,5 +1,10 @@
 #include "Applications/RegisterBasis.h"
 
+#include <algorithm>
+
+#include "Transforms/Splines/NurbsBasis.h"
+#include "Transforms/Splines/TSplineRefinement.h"
+
 namespace crease {
 namespace {
 
@@ -31,6 +36,36 @@ RegisterBasis<2> basis_on_triangles(const RegisterOptions& options, const Regist
   return result;
 }
 
+/// A T-spline, finer in some places.
+std::shared_ptr<const SplineBasis<2>> tspline_basis(const Raster<2>& raster, double length,
+                                                    int degree,
+                                                    const std::vector<FinerPlace<2>>& finer) {
+  if (finer.empty()) return covering_tspline(raster, length, nullptr, degree);
+  const EdgeLengthField wanted = [&](const Point<2>& x) {
+    double edge = length;
+    for (const FinerPlace<2>& place : finer) {
+      if ((x - place.centre).norm() <= place.radius) edge = std::min(edge, place.edge_length);
+    }
+    return edge;
+  };
+  return covering_tspline(raster, length, wanted, degree);
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> covering_basis(const RegisterOptions& options,
+                                                       const Raster<Dim>& raster,
+                                                       const std::vector<FinerPlace<Dim>>& finer) {
+  const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
+  const int degree = options.spline_degree();
+  if (options.transform == "nurbs") {
+    return std::make_shared<const NurbsBasis<Dim>>(covering_nurbs(raster, length, degree));
+  }
+  if constexpr (Dim == 2) {
+    if (options.transform == "tspline") return tspline_basis(raster, length, degree, finer);
+  }
+  return std::make_shared<const TensorBSplineBasis<Dim>>(covering_lattice(raster, length), degree);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -40,11 +75,8 @@ RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
   if constexpr (Dim == 2) {
     if (options.has_triangles()) return basis_on_triangles(options, input, report, finer);
   }
-  const Raster<Dim>& raster = input.fixed.image.raster();
-  const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
   RegisterBasis<Dim> result;
-  result.basis = std::make_shared<const TensorBSplineBasis<Dim>>(covering_lattice(raster, length),
-                                                                 options.spline_degree());
+  result.basis = covering_basis(options, input.fixed.image.raster(), finer);
   if (input.labels) result.bodies = label_weights(*input.labels);
   return result;
 }

@@ -73,7 +73,7 @@ int dimension_of(const RegisterOptions& options) {
     files.insert(files.end(), {options.fixed[c], options.moving[c]});
   }
   const int dimension = InputFiles::common_dimension(files);
-  if (dimension == 3 && options.has_triangles()) {
+  if (dimension == 3 && options.is_plane_only()) {
     throw UsageError(message("--transform triangular-bspline works on 2D images, and ",
                              options.fixed.front(),
                              " is 3D; take bspline, affine or rigid for volumes."));

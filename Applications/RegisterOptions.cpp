@@ -31,12 +31,16 @@ void check_transform(const RegisterOptions& o) {
     refuse_if(o.smoothness.has_value(), "smoothness", o, needs);
     refuse_if(o.no_creases, "no-creases", o, needs);
   }
-  refuse_if(o.degree.has_value() && !o.has_degree(), "degree", o,
-            "splines of any degree: --transform triangular-bspline or bspline");
+  refuse_if(o.degree.has_value() && o.transform == "powell-sabin", "degree", o,
+            "splines of other degrees than 2, such as triangular-bspline");
+  if (o.transform == "tspline" && o.spline_degree() % 2 == 0) {
+    throw UsageError(message("--degree ", o.spline_degree(),
+                             ": T-splines have degree 1, 3 or 5; take one of these."));
+  }
   refuse_if(o.adapt > 0 && !o.can_adapt(), "adapt", o,
-            "patches that can be divided: --transform triangular-bspline or powell-sabin");
+            "patches that can be divided: --transform triangular-bspline, powell-sabin or tspline");
   if (!o.is_spline()) {
-    const char* needs = "a spline: --transform triangular-bspline, bspline or powell-sabin";
+    const char* needs = "a spline, such as --transform triangular-bspline or bspline";
     refuse_if(o.mesh_size.has_value(), "mesh-size", o, needs);
     refuse_if(o.rigid_labels.has_value(), "rigid-labels", o, needs);
     refuse_if(o.beta.has_value(), "beta", o, needs);
@@ -198,8 +202,9 @@ std::vector<Option> domain_options(RegisterOptions& o) {
   return {
       {.name = "transform",
        .target = &o.transform,
-       .help = "What moves the image; on triangles in 2D only, the others in 2D and 3D",
-       .choices = {"triangular-bspline", "bspline", "powell-sabin", "affine", "rigid"}},
+       .help = "What moves the image; on triangles and T-splines in 2D only, the others in 3D, too",
+       .choices = {"triangular-bspline", "bspline", "nurbs", "powell-sabin", "tspline", "affine",
+                   "rigid"}},
       {.name = "degree",
        .target = &o.degree,
        .placeholder = "N",

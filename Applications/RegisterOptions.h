@@ -43,11 +43,14 @@ struct RegisterOptions {
 
   bool is_triangular() const { return transform == "triangular-bspline"; }
   bool has_triangles() const { return is_triangular() || transform == "powell-sabin"; }
-  bool is_spline() const { return has_triangles() || transform == "bspline"; }
+  bool is_spline() const {
+    return has_triangles() || transform == "bspline" || transform == "nurbs" ||
+           transform == "tspline";
+  }
+  /// Whether there is none but in the plane.
+  bool is_plane_only() const { return has_triangles() || transform == "tspline"; }
   /// Whether its patches can be divided where the images ask for it.
-  bool can_adapt() const { return has_triangles(); }
-  /// Whether its degree can be chosen.
-  bool has_degree() const { return is_triangular() || transform == "bspline"; }
+  bool can_adapt() const { return has_triangles() || transform == "tspline"; }
   std::size_t num_channels() const { return fixed.size(); }
   const std::string& metric_of(std::size_t channel) const {
     return metric[metric.size() == 1 ? 0 : channel];

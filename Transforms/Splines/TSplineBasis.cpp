@@ -139,6 +139,11 @@ double TSplineBasis::mean_edge_length() const {
   return sum / static_cast<double>(elements_.size());
 }
 
+double TSplineBasis::edge_length(const Point<2>& x) const {
+  const Element& e = elements_[find_element(box_.clamped(box_.coordinates(x)))];
+  return (e.upper - e.lower).mean();
+}
+
 void TSplineBasis::multiply(const Element& element, const std::array<BSplineSegment, 2>& bernstein,
                             int derivatives, BasisValues<2>& result) const {
   const Eigen::Index count = std::ssize(element.functions);

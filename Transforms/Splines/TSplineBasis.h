@@ -58,6 +58,7 @@ class TSplineBasis final : public SplineBasis<2> {
   double measure() const override { return box_.measure(); }
   /// Mean of the Bezier elements' sides.
   double mean_edge_length() const override;
+  double edge_length(const Point<2>& x) const override;
   /// Along each axis a product of derivatives keeps up to the full degree of every factor.
   int product_degree(int factors, int) const override { return factors * degree(); }
   BasisValues<2> evaluate(const Point<2>& x, int derivatives = 0) const override;

@@ -10,6 +10,7 @@
 #include "Transforms/Domains/Mesher.h"
 #include "Transforms/Splines/KnotLocator.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
+#include "Transforms/Splines/PowellSabinCreases.h"
 
 namespace crease {
 namespace {
@@ -49,7 +50,8 @@ CreasedDomain domain_with_discs(const RegionOfInterest& region,
                              .num_triangles = options.num_triangles,
                              .line_tolerance = options.line_tolerance});
   if (options.spline == TriangleSpline::kPowellSabin) {
-    domain.basis = std::make_shared<const PowellSabinBasis>(domain.mesh.mesh);
+    domain.basis = std::make_shared<const PowellSabinBasis>(
+        place_powell_sabin(domain.mesh, {.creases = options.creases}));
   } else {
     add_triangular_basis(options, domain);
   }

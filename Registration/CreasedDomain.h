@@ -16,17 +16,17 @@
 
 namespace crease {
 
-/// Splines on triangles.
+/// Splines on triangles, with creases along lines.
 enum class TriangleSpline {
-  kTriangular,  ///< triangular B-splines, with creases along lines
+  kTriangular,  ///< triangular B-splines
   /// Powell-Sabin splines: C1 quadratics that bend as they should with a third of the control points of
-  /// cubics. Lines are edges of the mesh and bodies its regions, but the spline is smooth across them.
+  /// cubics on the same triangles.
   kPowellSabin
 };
 
 /// How fine a creased domain is and how smooth its splines are. Lengths in mm, 0 asks for the default.
 struct CreasedDomainOptions {
-  /// With kPowellSabin degree, smoothness, creases and rigid_bodies do not matter.
+  /// With kPowellSabin degree, smoothness and rigid_bodies do not matter.
   TriangleSpline spline = TriangleSpline::kTriangular;
   int degree = 3;
   int smoothness = -1;  ///< continuous derivatives away from creases; -1: degree - 1

@@ -33,9 +33,11 @@ Half smallest_half(const std::vector<Vector<2>>& points) {
   }
   Half best;
   double least = std::numeric_limits<double>::infinity();
-  for (double height = 1.2; height < 3.1; height += 0.1) {
-    for (double share = 0; share < 1.01; share += 0.05) {
-      Half half{1e300, -1e300, (1 - share) * low + share * high, height * top};
+  constexpr int kHeights = 18, kPlaces = 20;
+  for (int h = 0; h <= kHeights; ++h) {
+    for (int k = 0; k <= kPlaces; ++k) {
+      const double share = static_cast<double>(k) / kPlaces;
+      Half half{1e300, -1e300, (1 - share) * low + share * high, (1.2 + 0.1 * h) * top};
       for (const auto& p : points) {  // carried to the axis along the line through the apex
         const double foot = half.apex + (p[0] - half.apex) * half.height / (half.height - p[1]);
         half.left = std::min(half.left, foot);
@@ -139,7 +141,7 @@ PowellSabinVertex vertex_at(const PowellSabinSides& sides, const PowellSabinSpli
   const Vector<2>& normal = sides.normal(v);
   if (normal.isZero(0)) {
     std::vector<Point<2>> flat;
-    for (const auto& p : points.colwise()) flat.push_back(mesh.vertices[v] + p.head<2>());
+    for (const auto& p : points.colwise()) flat.emplace_back(mesh.vertices[v] + p.head<2>());
     return triangle_vertex(enclosing_triangle(convex_hull(flat)));
   }
   // x, y, depth from t, p, q: x = t tangent + (p + q) normal, depth = p.

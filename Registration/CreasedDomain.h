@@ -39,7 +39,7 @@ struct CreasedDomainOptions {
   /// mm that edges may run off curved lines; default a pixel of the label image, else 1/20 of the edges
   /// near lines. For creases a pixel will do: half of it costs a third more triangles.
   double line_tolerance = 0;
-  int num_triangles = 0;             ///< > 0: about as many, whatever the edge lengths
+  int num_triangles = 0;                  ///< > 0: about as many, whatever the edge lengths
   std::vector<FineDisc> fine_discs = {};  ///< finer than the other lengths ask for
   /// Whether a rigidity energy will hold bodies rigid: their inner vertices then need no knots apart
   /// from themselves, which makes that energy cheap.

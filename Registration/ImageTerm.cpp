@@ -110,18 +110,27 @@ void ImageTerm<Dim>::sweep_tile(int pass, std::int64_t tile,
 template <int Dim>
 double ImageTerm<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                                 ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian) {
+  if (hessian == nullptr) return evaluate_blocks(phi, scale, gradient, nullptr);
+  CurvatureBlocks<Dim> curvature(grid_->raster().size);
+  const double value = evaluate_blocks(phi, scale, gradient, &curvature);
+  grid_->add_curvature(curvature, scale, *hessian);
+  return value;
+}
+
+template <int Dim>
+double ImageTerm<Dim>::evaluate_blocks(const Eigen::Ref<const ControlPoints<Dim>>& phi,
+                                       double scale, ControlPoints<Dim>* gradient,
+                                       CurvatureBlocks<Dim>* curvature) {
   const Raster<Dim>& raster = grid_->raster();
   const std::int64_t count = RowTiles<Dim>(raster).count();
   const auto coefficients = grid_->prepare(phi);
-  std::unique_ptr<CurvatureBlocks<Dim>> curvature;
-  if (hessian != nullptr) curvature = std::make_unique<CurvatureBlocks<Dim>>(raster.size);
   std::vector<Accumulator> accumulators(static_cast<std::size_t>(count));
   double value = 0;
-  const bool derivatives = gradient != nullptr || hessian != nullptr;
+  const bool derivatives = gradient != nullptr || curvature != nullptr;
   const int num_passes = derivatives ? metric_->num_passes() : metric_->value_pass() + 1;
   for (int pass = 0; pass < num_passes; ++pass) {
     const bool last = pass + 1 == metric_->num_passes();
-    const Outputs outputs{last && derivatives, last ? curvature.get() : nullptr};
+    const Outputs outputs{last && derivatives, last ? curvature : nullptr};
     std::vector<Sums> sums(static_cast<std::size_t>(count));
     parallel_for(count, [&](std::int64_t tile) {
       const auto t = static_cast<std::size_t>(tile);
@@ -136,7 +145,6 @@ double ImageTerm<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi,
     grid_->finish(accumulators, forces);
     *gradient += scale * forces;
   }
-  if (hessian != nullptr) grid_->add_curvature(*curvature, scale, *hessian);
   return value;
 }
 

@@ -25,6 +25,9 @@ class ImageTerm {
   /// The metric's value; adds scale times its gradient (Dim x n) and curvature where not null.
   double evaluate(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                   ControlPoints<Dim>* gradient, BlockHessian<Dim>* hessian);
+  /// The same with the samples' curvature as it comes, in small blocks and not scaled.
+  double evaluate_blocks(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
+                         ControlPoints<Dim>* gradient, CurvatureBlocks<Dim>* curvature);
   /// The largest |sum_i step_i B_i(x)| over the samples of every fourth row, in units of the smallest sample
   /// spacing.
   double largest_step(const Eigen::Ref<const ControlPoints<Dim>>& step) const;

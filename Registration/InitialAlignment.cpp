@@ -20,6 +20,7 @@
 #include "Transforms/AffineTransform.h"
 #include "Transforms/LandmarkFits.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 
 namespace crease {
 namespace {
@@ -46,6 +47,9 @@ AffineMap<Dim> start_map(const Image<float, Dim>& fixed, const Image<float, Dim>
     case AlignmentStart::kLandmarks:
       if (options.search == AlignmentSearch::kAffine) {
         return fit_affine<Dim>(landmarks.fixed, landmarks.moving).affine_map();
+      }
+      if (options.search == AlignmentSearch::kSimilarity) {
+        return fit_similarity<Dim>(landmarks.fixed, landmarks.moving).affine_map();
       }
       return fit_rigid<Dim>(landmarks.fixed, landmarks.moving).affine_map();
   }
@@ -106,14 +110,23 @@ struct SearchStart {
 };
 
 template <int Dim>
-SearchStart<Dim> search_start(const SearchLevel<Dim>& level, const AffineMap<Dim>& map,
-                              bool rigid) {
-  std::unique_ptr<Transform<Dim>> transform;
-  if (rigid) {
-    transform = std::make_unique<RigidTransform<Dim>>(map, level.centroid);
-  } else {
-    transform = std::make_unique<AffineTransform<Dim>>(map, level.centroid);
+std::unique_ptr<Transform<Dim>> searched_transform(AlignmentSearch search,
+                                                   const AffineMap<Dim>& map,
+                                                   const Point<Dim>& centre) {
+  switch (search) {
+    case AlignmentSearch::kRigid:
+      return std::make_unique<RigidTransform<Dim>>(map, centre);
+    case AlignmentSearch::kSimilarity:
+      return std::make_unique<SimilarityTransform<Dim>>(map, centre);
+    default:
+      return std::make_unique<AffineTransform<Dim>>(map, centre);
   }
+}
+
+template <int Dim>
+SearchStart<Dim> search_start(const SearchLevel<Dim>& level, const AffineMap<Dim>& map,
+                              AlignmentSearch search) {
+  auto transform = searched_transform<Dim>(search, map, level.centroid);
   const Eigen::VectorXd parameters = transform->parameters();
   return {AffineObjective<Dim>(level.metric, std::move(transform), level.centroid, level.radius),
           parameters};
@@ -133,7 +146,7 @@ Eigen::VectorXd unit_steps(const SearchLevel<Dim>& level) {
 template <int Dim>
 AffineMap<Dim> coarse_search(const SearchLevel<Dim>& level, const AffineMap<Dim>& start,
                              bool try_angles, int& evaluations) {
-  SearchStart<Dim> search = search_start(level, start, true);
+  SearchStart<Dim> search = search_start(level, start, AlignmentSearch::kRigid);
   const Eigen::VectorXd units = unit_steps(level);
   const auto value = [&](const Eigen::VectorXd& parameters) {
     ++evaluations;
@@ -215,9 +228,9 @@ std::unique_ptr<Optimizer> refining_optimizer(OptimizerKind kind) {
 
 /// One level; keeps the start when nothing better is found.
 template <int Dim>
-AffineMap<Dim> refine(const SearchLevel<Dim>& level, const AffineMap<Dim>& start, bool rigid,
-                      OptimizerKind kind, int& evaluations) {
-  SearchStart<Dim> search = search_start(level, start, rigid);
+AffineMap<Dim> refine(const SearchLevel<Dim>& level, const AffineMap<Dim>& start,
+                      AlignmentSearch search_kind, OptimizerKind kind, int& evaluations) {
+  SearchStart<Dim> search = search_start(level, start, search_kind);
   ScaledObjective objective(search.objective, search.parameters);
   const OptimizerResult found = refining_optimizer(kind)->minimize(
       objective, Eigen::VectorXd::Zero(search.parameters.size()));
@@ -227,7 +240,7 @@ AffineMap<Dim> refine(const SearchLevel<Dim>& level, const AffineMap<Dim>& start
 
 template <int Dim>
 double value_at(const SearchLevel<Dim>& level, const AffineMap<Dim>& map) {
-  SearchStart<Dim> search = search_start(level, map, false);
+  SearchStart<Dim> search = search_start(level, map, AlignmentSearch::kAffine);
   return search.objective.evaluate(search.parameters, nullptr, nullptr);
 }
 
@@ -326,9 +339,9 @@ Alignment<Dim> align(std::span<const ChannelView<Dim>> channels, const Landmarks
       if (l == 0 && !given && options.start != AlignmentStart::kLandmarks) {
         result.map = coarse_search(level_at(l), result.map, options.try_angles, evaluations);
       }
-      const bool rigid = options.search == AlignmentSearch::kRigid;
       for (int again = 0; again < 2; ++again) {  // with the samples that are inside by then
-        result.map = refine(level_at(l), result.map, rigid, options.optimizer, evaluations);
+        result.map =
+            refine(level_at(l), result.map, options.search, options.optimizer, evaluations);
       }
     }
   }

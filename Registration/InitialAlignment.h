@@ -22,7 +22,7 @@ using GivenMap = std::optional<AffineMap<Dim>>;
 /// Where the search for A starts: centres of mass, of the images, a fit to landmarks, or the identity.
 enum class AlignmentStart { kMoments, kCentres, kLandmarks, kIdentity };
 /// Which maps are searched; none: the start is kept.
-enum class AlignmentSearch { kNone, kRigid, kAffine };
+enum class AlignmentSearch { kNone, kRigid, kSimilarity, kAffine };
 
 /// How A is found.
 struct AlignmentOptions {
@@ -52,13 +52,13 @@ struct Alignment {
   AlignmentReport report;
 };
 
-/// Finds the rigid or affine map A that the spline starts from: a start by moments, centres or
+/// Finds the rigid, similar or affine map A that the spline starts from: a start by moments, centres or
 /// landmarks, then a search by the Nelder-Mead simplex on a pyramid (about 64 samples across at the
 /// coarsest level), then Gauss-Newton or another optimizer, by a metric that may be any.
 ///
 /// @param channels   what is compared; the first makes the start. Intensities of several are normalised, so
 ///                   that their weights do not depend on units; those of one are taken as they are.
-/// @param landmarks  may be empty; two (rigid) or three (affine) and more replace the start by their
+/// @param landmarks  may be empty; two (rigid, similarity) or three (affine) and more replace the start by their
 ///                   least-squares fit when the start asks for landmarks.
 /// @param given      the start, in place of the one that the options name.
 /// @throws InvalidInput when an image is constant in its mask, or when the images do not overlap after the

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "Core/Error.h"
@@ -96,9 +97,11 @@ LinearConstraints rows_of(const Landmarks<Dim>& landmarks, const SplineBasis<Dim
   return constraints;
 }
 
+/// @param chosen  the landmark of each row.
 std::vector<int> with_dependents(const DependentRow& row, const std::vector<int>& chosen) {
   std::vector<int> landmarks;
   for (int i : row.depends_on) landmarks.push_back(chosen[static_cast<std::size_t>(i)]);
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
   return landmarks;
 }
 
@@ -112,10 +115,11 @@ std::string place_text(const Point<Dim>& p, const SplineBasis<Dim>& basis) {
                  triangular->find_simplex(p));
 }
 
+/// @param place  says where a point is.
 template <int Dim>
 LandmarkContradiction contradiction(const std::vector<DependentRow>& rows,
                                     const std::vector<int>& chosen, const Landmarks<Dim>& landmarks,
-                                    const SplineBasis<Dim>& basis) {
+                                    const std::function<std::string(const Point<Dim>&)>& place) {
   constexpr std::size_t kMost = 5;
   std::set<int> all;
   std::string text = "the exact landmarks contradict each other: ";
@@ -126,8 +130,8 @@ LandmarkContradiction contradiction(const std::vector<DependentRow>& rows,
     all.insert(others.begin(), others.end());
     if (i >= kMost) continue;
     text += message(i > 0 ? "; landmark " : "landmark ", landmark + 1, " at ",
-                    place_text<Dim>(landmarks.fixed[static_cast<std::size_t>(landmark)], basis),
-                    ", misses what ", listed(others), " imply by ", rows[i].residual.norm(), " mm");
+                    place(landmarks.fixed[static_cast<std::size_t>(landmark)]), ", misses what ",
+                    listed(others), " imply by ", rows[i].residual.norm(), " mm");
   }
   if (rows.size() > kMost) text += message("; and ", rows.size() - kMost, " more");
   return {{all.begin(), all.end()}, std::move(text)};
@@ -153,10 +157,66 @@ std::unique_ptr<NullSpace> agreed_null_space(const NullSpace& all,
                                              const std::vector<int>& chosen, NullSpaceKind kind) {
   std::vector<int> rows;
   for (int j : contradicting.landmarks) {
-    rows.push_back(
-        static_cast<int>(std::lower_bound(chosen.begin(), chosen.end(), j) - chosen.begin()));
+    const auto [first, last] = std::equal_range(chosen.begin(), chosen.end(), j);
+    for (auto row = first; row != last; ++row) {
+      rows.push_back(static_cast<int>(row - chosen.begin()));
+    }
   }
   return make_null_space(kind, compromise(all.constraints(), rows, kLeastShare), all.num_rows());
+}
+
+/// Notes what is redundant, and refuses, or agrees on, what contradicts.
+/// @param of_rows  the landmark of each row.
+template <int Dim>
+LandmarkConstraints<Dim> resolved(std::unique_ptr<NullSpace> null_space,
+                                  const Landmarks<Dim>& landmarks, const std::vector<int>& of_rows,
+                                  double tolerance, LandmarkConflict conflict, NullSpaceKind kind,
+                                  const std::function<std::string(const Point<Dim>&)>& place) {
+  LandmarkConstraints<Dim> result;
+  const DependentRowClasses classes = classify_dependent_rows(*null_space, tolerance);
+  for (const DependentRow& row : classes.redundant) {
+    std::string note =
+        message("landmark ", of_rows[static_cast<std::size_t>(row.row)] + 1, " follows from ",
+                listed(with_dependents(row, of_rows)), "; ignored");
+    if (result.notes.empty() || result.notes.back() != note)
+      result.notes.push_back(std::move(note));
+  }
+  result.contradictory = !classes.contradictory.empty();
+  if (result.contradictory) {
+    const auto found = contradiction<Dim>(classes.contradictory, of_rows, landmarks, place);
+    if (conflict == LandmarkConflict::kError) throw InvalidInput(message(found.text, kRemedies));
+    null_space = agreed_null_space(*null_space, found, of_rows, kind);
+    result.notes.push_back(message(found.text, "; these ", found.landmarks.size(),
+                                   " landmarks are met in the least-squares sense"));
+  }
+  result.null_space = std::move(null_space);
+  return result;
+}
+
+/// Rows for all coordinates of one landmark after the other.
+template <int Dim>
+LinearConstraints rows_of(const Landmarks<Dim>& landmarks, const Transform<Dim>& transform,
+                          const std::vector<int>& chosen) {
+  if (!transform.linear_in_parameters()) {
+    throw InvalidInput(
+        "exact landmarks need a transform that is linear in its parameters, which this one is not; "
+        "give them a sigma (soft landmarks)");
+  }
+  std::vector<Point<Dim>> points;
+  for (int j : chosen) points.push_back(landmarks.fixed[static_cast<std::size_t>(j)]);
+  const Eigen::MatrixXd columns = transform.parameter_jacobian(points);
+  LinearConstraints rows;
+  rows.C = Eigen::MatrixXd(columns.transpose()).sparseView(1.0, 0.0);
+  rows.d.resize(columns.cols(), 1);
+  const Eigen::VectorXd at_rest = columns.transpose() * transform.parameters();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto j = static_cast<std::size_t>(chosen[k]);
+    const auto first = Dim * static_cast<Eigen::Index>(k);
+    rows.d.template middleRows<Dim>(first) =
+        landmarks.moving[j] - transform.map(points[k]) + at_rest.segment<Dim>(first);
+    rows.names.insert(rows.names.end(), Dim, "landmark " + std::to_string(j + 1));
+  }
+  return rows;
 }
 
 }  // namespace
@@ -186,7 +246,8 @@ std::optional<LandmarkContradiction> find_contradiction(const Landmarks<Dim>& la
                                           basis.num_control_points());
   const auto rows = classify_dependent_rows(*null_space, tolerance).contradictory;
   if (rows.empty()) return std::nullopt;
-  return contradiction(rows, chosen, landmarks, basis);
+  return contradiction<Dim>(rows, chosen, landmarks,
+                            [&](const Point<Dim>& p) { return place_text<Dim>(p, basis); });
 }
 
 template <int Dim>
@@ -225,34 +286,59 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
   refuse_outside(landmarks, basis);
   refuse_two_partners(landmarks, chosen, tolerance);
 
-  LandmarkConstraints<Dim> result;
-  auto null_space = make_null_space(kind,
+  LandmarkConstraints<Dim> result =
+      resolved<Dim>(make_null_space(kind,
                                     chosen.empty() ? no_constraints(basis.num_control_points(), Dim)
                                                    : rows_of(landmarks, basis, affine, chosen),
-                                    basis.num_control_points());
-  const DependentRowClasses classes = classify_dependent_rows(*null_space, tolerance);
-  for (const DependentRow& row : classes.redundant) {
-    result.notes.push_back(message("landmark ", chosen[static_cast<std::size_t>(row.row)] + 1,
-                                   " follows from ", listed(with_dependents(row, chosen)),
-                                   "; ignored"));
-  }
-  if (!classes.contradictory.empty()) {
-    const auto found = contradiction(classes.contradictory, chosen, landmarks, basis);
-    if (options.conflict == LandmarkConflict::kError) {
-      throw InvalidInput(message(found.text, kRemedies));
-    }
-    null_space = agreed_null_space(*null_space, found, chosen, kind);
-    result.notes.push_back(message(found.text, "; these ", found.landmarks.size(),
-                                   " landmarks are met in the least-squares sense"));
-  } else if (const auto strain =
-                 landmark_strain(landmarks, basis, options.mode, kLargestLandmarkStrain);
-             strain.magnification > kLargestLandmarkStrain) {
+                                    basis.num_control_points()),
+                    landmarks, chosen, tolerance, options.conflict, kind,
+                    [&](const Point<Dim>& p) { return place_text<Dim>(p, basis); });
+  if (result.contradictory) return result;
+  const auto strain = landmark_strain(landmarks, basis, options.mode, kLargestLandmarkStrain);
+  if (strain.magnification > kLargestLandmarkStrain) {
     result.notes.push_back(message("exact ", listed(strain.landmarks),
                                    " nearly contradict each other: the map bends ",
                                    strain.magnification, " times as far as they move", kRemedies));
   }
-  result.null_space = std::move(null_space);
   return result;
+}
+
+template <int Dim>
+LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmarks,
+                                                   const Transform<Dim>& transform, double length,
+                                                   const LandmarkOptions& options,
+                                                   NullSpaceKind kind) {
+  const std::vector<int> chosen = exact_landmarks(landmarks, options.mode);
+  const double tolerance = 1e-6 * length;
+  refuse_two_partners(landmarks, chosen, tolerance);
+  if (chosen.empty()) {
+    const auto none = no_constraints(transform.num_parameters());
+    return {make_null_space(kind, none, transform.num_parameters()), {}, false};
+  }
+  LinearConstraints rows = rows_of(landmarks, transform, chosen);
+  // Full rows, of landmarks that are no centres: each would fill a row of a sparse null space.
+  const bool full = rows.C.nonZeros() > 2 * rows.C.rows();
+  const NullSpaceKind used =
+      full && kind == NullSpaceKind::kElimination ? NullSpaceKind::kQr : kind;
+  std::vector<int> of_rows;
+  for (int j : chosen) of_rows.insert(of_rows.end(), Dim, j);
+  return resolved<Dim>(make_null_space(used, std::move(rows), transform.num_parameters()),
+                       landmarks, of_rows, tolerance, options.conflict, used,
+                       [](const Point<Dim>& p) { return point_text<Dim>(p); });
+}
+
+template <int Dim>
+SoftLandmarks<Dim> soft_landmarks(const Landmarks<Dim>& landmarks, const LandmarkOptions& options) {
+  const auto exact = exact_landmarks(landmarks, options.mode);
+  SoftLandmarks<Dim> soft;
+  for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
+    if (std::binary_search(exact.begin(), exact.end(), static_cast<int>(j))) continue;
+    const bool own = j < landmarks.sigma_mm.size() && std::isfinite(landmarks.sigma_mm[j]);
+    soft.fixed.push_back(landmarks.fixed[j]);
+    soft.moving.push_back(landmarks.moving[j]);
+    soft.sigma_mm.push_back(own ? landmarks.sigma_mm[j] : options.sigma_mm);
+  }
+  return soft;
 }
 
 template <int Dim>
@@ -260,18 +346,10 @@ std::shared_ptr<const LandmarkEnergy<Dim>> soft_landmark_energy(const Landmarks<
                                                                 const SplineBasis<Dim>& basis,
                                                                 const AffineMap<Dim>& affine,
                                                                 const LandmarkOptions& options) {
-  const auto exact = exact_landmarks(landmarks, options.mode);
-  std::vector<Point<Dim>> fixed, moving;
-  std::vector<double> sigma_mm;
-  for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
-    if (std::binary_search(exact.begin(), exact.end(), static_cast<int>(j))) continue;
-    const bool own = j < landmarks.sigma_mm.size() && std::isfinite(landmarks.sigma_mm[j]);
-    fixed.push_back(landmarks.fixed[j]);
-    moving.push_back(landmarks.moving[j]);
-    sigma_mm.push_back(own ? landmarks.sigma_mm[j] : options.sigma_mm);
-  }
-  if (fixed.empty()) return nullptr;
-  return std::make_shared<const LandmarkEnergy<Dim>>(basis, affine, fixed, moving, sigma_mm);
+  const SoftLandmarks<Dim> soft = soft_landmarks(landmarks, options);
+  if (soft.fixed.empty()) return nullptr;
+  return std::make_shared<const LandmarkEnergy<Dim>>(basis, affine, soft.fixed, soft.moving,
+                                                     soft.sigma_mm);
 }
 
 template std::vector<int> exact_landmarks<2>(const Landmarks<2>&, LandmarkMode);
@@ -294,6 +372,15 @@ template LandmarkConstraints<3> make_landmark_constraints<3>(const Landmarks<3>&
                                                              const SplineBasis<3>&,
                                                              const AffineMap<3>&,
                                                              const LandmarkOptions&, NullSpaceKind);
+
+template LandmarkConstraints<2> make_landmark_constraints<2>(const Landmarks<2>&,
+                                                             const Transform<2>&, double,
+                                                             const LandmarkOptions&, NullSpaceKind);
+template LandmarkConstraints<3> make_landmark_constraints<3>(const Landmarks<3>&,
+                                                             const Transform<3>&, double,
+                                                             const LandmarkOptions&, NullSpaceKind);
+template SoftLandmarks<2> soft_landmarks<2>(const Landmarks<2>&, const LandmarkOptions&);
+template SoftLandmarks<3> soft_landmarks<3>(const Landmarks<3>&, const LandmarkOptions&);
 
 template std::shared_ptr<const LandmarkEnergy<2>> soft_landmark_energy<2>(const Landmarks<2>&,
                                                                           const SplineBasis<2>&,

@@ -10,6 +10,7 @@
 #include "Transforms/AffineMap.h"
 #include "Transforms/Energies/LandmarkEnergy.h"
 #include "Transforms/Splines/SplineBasis.h"
+#include "Transforms/Transform.h"
 
 namespace crease {
 
@@ -31,6 +32,7 @@ template <int Dim>
 struct LandmarkConstraints {
   std::shared_ptr<const NullSpace> null_space;
   std::vector<std::string> notes;  ///< redundant landmarks, compromises
+  bool contradictory = false;      ///< some did, and are met as well as they can be
 };
 
 /// Exact landmarks that splines of a basis cannot meet together.
@@ -79,6 +81,26 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
                                                    const LandmarkOptions& options,
                                                    NullSpaceKind kind);
 
+/// The same for a transform that is linear in its parameters, as equations for all of these in one
+/// vector: Dim for each landmark.
+/// @param length  mm: landmarks that contradict each other by less than a millionth of it do not.
+/// @throws InvalidInput likewise, and when there are exact landmarks and the transform is not linear.
+template <int Dim>
+LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmarks,
+                                                   const Transform<Dim>& transform, double length,
+                                                   const LandmarkOptions& options,
+                                                   NullSpaceKind kind);
+
+/// Landmarks that are met only up to their uncertainty, one entry each.
+template <int Dim>
+struct SoftLandmarks {
+  std::vector<Point<Dim>> fixed, moving;  ///< mm
+  std::vector<double> sigma_mm;           ///< their own, else the option's
+};
+
+template <int Dim>
+SoftLandmarks<Dim> soft_landmarks(const Landmarks<Dim>& landmarks, const LandmarkOptions& options);
+
 /// The energy of the landmarks that are met only up to their uncertainty (their own sigma_mm, else the
 /// option's); null where there are none.
 template <int Dim>
@@ -109,6 +131,16 @@ extern template LandmarkConstraints<3> make_landmark_constraints<3>(const Landma
                                                                     const AffineMap<3>&,
                                                                     const LandmarkOptions&,
                                                                     NullSpaceKind);
+extern template LandmarkConstraints<2> make_landmark_constraints<2>(const Landmarks<2>&,
+                                                                    const Transform<2>&, double,
+                                                                    const LandmarkOptions&,
+                                                                    NullSpaceKind);
+extern template LandmarkConstraints<3> make_landmark_constraints<3>(const Landmarks<3>&,
+                                                                    const Transform<3>&, double,
+                                                                    const LandmarkOptions&,
+                                                                    NullSpaceKind);
+extern template SoftLandmarks<2> soft_landmarks<2>(const Landmarks<2>&, const LandmarkOptions&);
+extern template SoftLandmarks<3> soft_landmarks<3>(const Landmarks<3>&, const LandmarkOptions&);
 extern template std::shared_ptr<const LandmarkEnergy<2>> soft_landmark_energy<2>(
     const Landmarks<2>&, const SplineBasis<2>&, const AffineMap<2>&, const LandmarkOptions&);
 extern template std::shared_ptr<const LandmarkEnergy<3>> soft_landmark_energy<3>(

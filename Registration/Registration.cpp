@@ -6,8 +6,10 @@
 #include "Images/ImageFile.h"
 #include "Registration/RegistrationParts.h"
 #include "Registration/RegistrationRun.h"
+#include "Registration/TransformRun.h"
 #include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/Energies/RigidityEnergy.h"
+#include "Transforms/Splines/CoveringCentres.h"
 
 namespace crease {
 
@@ -22,6 +24,16 @@ template <int Dim>
 EnergyFactory<Dim> rigidity(WeightField<Dim> rigid) {
   return [rigid](const SplineBasis<Dim>& basis, const AffineMap<Dim>& affine) {
     return std::make_shared<RigidityEnergy<Dim>>(basis, rigid, affine);
+  };
+}
+
+template <int Dim>
+TransformFactory<Dim> cauchy_navier(const Raster<Dim>& raster, double length,
+                                    const std::vector<Point<Dim>>& landmarks,
+                                    double poisson_ratio) {
+  const ControlPoints<Dim> centres = covering_centres<Dim>(raster, length, landmarks);
+  return [centres, poisson_ratio](const AffineMap<Dim>& affine) {
+    return std::make_unique<CauchyNavierTransform<Dim>>(centres, poisson_ratio, affine);
   };
 }
 
@@ -97,6 +109,20 @@ Registration<Dim>& Registration<Dim>::look_for_finer_places(bool look) {
 template <int Dim>
 Registration<Dim>& Registration<Dim>::basis(std::shared_ptr<const SplineBasis<Dim>> basis) {
   parts_->basis = std::move(basis);
+  return *this;
+}
+
+template <int Dim>
+Registration<Dim>& Registration<Dim>::transform(TransformFactory<Dim> factory,
+                                                TransformOptions options) {
+  if (!(options.detail_mm > 0) || !std::isfinite(options.detail_mm) || !(options.roughness >= 0) ||
+      !std::isfinite(options.roughness)) {
+    throw InvalidInput(message("registration: a transform's detail is ", options.detail_mm,
+                               " mm and the weight of its roughness ", options.roughness,
+                               "; both must be finite, the first positive, the second 0 or more"));
+  }
+  parts_->transform = std::move(factory);
+  parts_->transform_options = options;
   return *this;
 }
 
@@ -204,6 +230,7 @@ RegistrationResult<Dim> Registration<Dim>::run(const RegistrationCallback& progr
       }
     }
   }
+  if (parts_->transform) return TransformRun<Dim>(*parts_, progress).execute();
   return RegistrationRun<Dim>(*parts_, progress).execute();
 }
 
@@ -211,6 +238,10 @@ template EnergyFactory<2> bending<2>(WeightField<2>);
 template EnergyFactory<3> bending<3>(WeightField<3>);
 template EnergyFactory<2> rigidity<2>(WeightField<2>);
 template EnergyFactory<3> rigidity<3>(WeightField<3>);
+template TransformFactory<2> cauchy_navier<2>(const Raster<2>&, double,
+                                              const std::vector<Point<2>>&, double);
+template TransformFactory<3> cauchy_navier<3>(const Raster<3>&, double,
+                                              const std::vector<Point<3>>&, double);
 template class Registration<2>;
 template class Registration<3>;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -21,6 +22,7 @@
 #include "Registration/MetricFactories.h"
 #include "Registration/Progress.h"
 #include "Registration/RegistrationObjective.h"
+#include "Transforms/CauchyNavierTransform.h"
 #include "Transforms/Energies/WeightField.h"
 #include "Transforms/SplineTransform.h"
 
@@ -42,10 +44,38 @@ EnergyFactory<Dim> bending(WeightField<Dim> rigid = nullptr);
 template <int Dim>
 EnergyFactory<Dim> rigidity(WeightField<Dim> rigid = body_weights<Dim>());
 
+/// Makes the transform of a registration, at rest T = A, when the affine map A is known.
+template <int Dim>
+using TransformFactory =
+    std::function<std::unique_ptr<Transform<Dim>>(const AffineMap<Dim>& affine)>;
+
+/// How a transform that is no spline on a basis is registered.
+struct TransformOptions {
+  /// mm: the distance over which the transform varies, as that of its centres; samples are mapped through
+  /// a lattice of a quarter of it (TransformLattice).
+  double detail_mm = 16;
+  double roughness = 0;  ///< weight of the transform's own roughness (Transform::roughness_matrix)
+};
+
+/// Elastic body splines (CauchyNavierTransform) with covering_centres(): a lattice about `length` mm apart over
+/// the raster, and the landmarks.
+template <int Dim>
+TransformFactory<Dim> cauchy_navier(const Raster<Dim>& raster, double length,
+                                    const std::vector<Point<Dim>>& landmarks = {},
+                                    double poisson_ratio = kPoissonRatio);
+
+/// A weight of roughness beside images whose intensities are normalised, mm^(Dim + 1), for centres `length` mm
+/// apart: 1e-4 length^(Dim + 1), from which Schedule::adapt_weights starts.
+template <int Dim>
+double default_roughness_weight(double length) {
+  return 1e-4 * std::pow(length, Dim + 1);
+}
+
 /// From coarse to fine.
 struct Schedule {
-  int levels = 3;            ///< image pyramid, a factor of 2 each; fewer for small images
-  double level_bending = 4;  ///< the energy named "bending" weighs this much more per coarser level
+  int levels = 3;  ///< image pyramid, a factor of 2 each; fewer for small images
+  /// The energy named "bending", or a transform's roughness, weighs this much more per coarser level.
+  double level_bending = 4;
   /// Try a start fitted to dense optical flow (2D, metrics that expect similar intensities).
   bool optical_flow = true;
   /// Weighs the energy named "bending" by the noise and the roughness that the levels show
@@ -85,7 +115,8 @@ struct UnfoldingReport {
 /// The map, and what is known about it and the way to it.
 template <int Dim>
 struct RegistrationResult {
-  std::shared_ptr<const SplineTransform<Dim>> transform;
+  std::shared_ptr<const Transform<Dim>>
+      transform;           ///< SplineTransform unless another was asked for
   AffineMap<Dim> initial;  ///< A: what the alignment found
   AlignmentReport alignment;
   std::map<std::string, double> energies;  ///< unweighted, at the finest level
@@ -140,8 +171,12 @@ class Registration {
   Registration& go_on_from(const RegistrationResult<Dim>& earlier);
   /// Fills RegistrationResult::finer_places at the end.
   Registration& look_for_finer_places(bool look = true);
-  /// Of u; needed.
+  /// Of u; needed, unless another transform is given.
   Registration& basis(std::shared_ptr<const SplineBasis<Dim>> basis);
+  /// In place of a spline on a basis: any transform, by any metric and optimizer. Its own roughness takes the
+  /// place of energies; Schedule::adapt_weights weighs it as bending, but does not watch for folds. Exact
+  /// landmarks need a transform that is linear in its parameters. @throws InvalidInput when the options are not positive numbers.
+  Registration& transform(TransformFactory<Dim> factory, TransformOptions options);
   /// How images are compared; the default is ssd(). The weight is that of the first channel among several.
   /// @throws InvalidInput for a weight that is negative or not finite.
   Registration& metric(MetricFactory<Dim> factory, double weight = 1);

@@ -17,6 +17,8 @@ struct RegistrationParts {
   std::optional<AffineMap<Dim>> initial;
   std::shared_ptr<const SplineTransform<Dim>> start;  ///< null: found by the run
   std::shared_ptr<const SplineBasis<Dim>> basis;
+  TransformFactory<Dim> transform;  ///< null: a spline on the basis
+  TransformOptions transform_options;
   double image_weight = 1;
   /// An energy to be made, and its weight.
   struct WeightedFactory {

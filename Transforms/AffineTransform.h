@@ -29,6 +29,7 @@ class AffineTransform final : public Transform<Dim> {
   void set_parameters(const Eigen::Ref<const Eigen::VectorXd>& parameters) override;
   void add_adjoint(std::span<const Point<Dim>> x, std::span<const Vector<Dim>> forces,
                    Eigen::Ref<Eigen::VectorXd> gradient) const override;
+  bool linear_in_parameters() const override { return true; }
 
  private:
   Point<Dim> centre_;

@@ -1,56 +1,9 @@
 #include "Transforms/RigidTransform.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <cmath>
-
 #include "Core/Error.h"
 #include "Transforms/ParameterCheck.h"
 
 namespace crease {
-namespace {
-
-Matrix<3> cross_matrix(const Vector<3>& w) {
-  return Matrix<3>{{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};
-}
-
-Matrix<2> rotation(const Eigen::Matrix<double, 1, 1>& angle) {
-  return Eigen::Rotation2Dd(angle[0]).toRotationMatrix();
-}
-
-Matrix<3> rotation(const Vector<3>& w) {
-  const double angle = w.norm();
-  if (angle == 0) return Matrix<3>::Identity();
-  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
-}
-
-Eigen::Matrix<double, 1, 1> angles_of(const Matrix<2>& r) {
-  return Eigen::Matrix<double, 1, 1>(std::atan2(r(1, 0), r(0, 0)));
-}
-
-Vector<3> angles_of(const Matrix<3>& r) {
-  const Eigen::AngleAxisd turn(r);
-  return turn.angle() * turn.axis();
-}
-
-/// d(R v)/dangle.
-Matrix<2, 1> by_angles(const Matrix<2>& r, const Eigen::Matrix<double, 1, 1>&, const Vector<2>& v) {
-  const Vector<2> turned = r * v;
-  return {-turned[1], turned[0]};
-}
-
-/// d(R(w) v)/dw = -R [v] J, J = I - (1 - cos a)/a^2 [w] + (a - sin a)/a^3 [w]^2, a = |w|.
-Matrix<3> by_angles(const Matrix<3>& r, const Vector<3>& w, const Vector<3>& v) {
-  const double a = w.norm(), a2 = a * a;
-  const bool small = a < 1e-4;  // the next terms of the series are below rounding
-  const double first = small ? 0.5 - a2 / 24 : (1 - std::cos(a)) / a2;
-  const double second = small ? 1.0 / 6 - a2 / 120 : (a - std::sin(a)) / (a2 * a);
-  const Matrix<3> cross = cross_matrix(w);
-  const Matrix<3> j = Matrix<3>::Identity() - first * cross + second * cross * cross;
-  return -r * cross_matrix(v) * j;
-}
-
-}  // namespace
 
 template <int Dim>
 RigidTransform<Dim>::RigidTransform(const Point<Dim>& centre) : centre_(centre) {
@@ -60,11 +13,11 @@ RigidTransform<Dim>::RigidTransform(const Point<Dim>& centre) : centre_(centre) 
 template <int Dim>
 RigidTransform<Dim>::RigidTransform(const AffineMap<Dim>& map, const Point<Dim>& centre)
     : RigidTransform(centre) {
-  if (!map.finite() || !map.linear.isUnitary(1e-9) || map.linear.determinant() < 0) {
+  if (!map.finite() || !is_rotation<Dim>(map.linear)) {
     throw InvalidInput(message("RigidTransform: the matrix\n", map.linear, "\nis not a rotation."));
   }
-  angles_ = angles_of(map.linear);
-  rotation_ = crease::rotation(angles_);
+  angles_ = rotation_angles<Dim>(map.linear);
+  rotation_ = rotation_matrix<Dim>(angles_);
   translation_ = map(centre) - centre;
 }
 
@@ -95,7 +48,7 @@ void RigidTransform<Dim>::set_parameters(const Eigen::Ref<const Eigen::VectorXd>
   check_parameters("RigidTransform", parameters, num_parameters());
   angles_ = parameters.template head<kNumAngles>();
   translation_ = parameters.template tail<Dim>();
-  rotation_ = crease::rotation(angles_);
+  rotation_ = rotation_matrix<Dim>(angles_);
 }
 
 template <int Dim>
@@ -105,7 +58,7 @@ void RigidTransform<Dim>::add_adjoint(std::span<const Point<Dim>> x,
   check_adjoint("RigidTransform", x.size(), forces.size(), gradient.size(), num_parameters());
   for (std::size_t k = 0; k < x.size(); ++k) {
     gradient.template head<kNumAngles>() +=
-        by_angles(rotation_, angles_, x[k] - centre_).transpose() * forces[k];
+        rotated_by_angles<Dim>(rotation_, angles_, x[k] - centre_).transpose() * forces[k];
     gradient.template tail<Dim>() += forces[k];
   }
 }

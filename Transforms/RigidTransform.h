@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Transforms/AffineMap.h"
+#include "Transforms/Rotation.h"
 #include "Transforms/Transform.h"
 
 namespace crease {
@@ -13,7 +14,7 @@ template <int Dim>
 class RigidTransform final : public Transform<Dim> {
  public:
   static constexpr int kNumAngles = Dim == 2 ? 1 : 3;
-  using Angles = Eigen::Matrix<double, kNumAngles, 1>;
+  using Angles = RotationAngles<Dim>;
 
   /// The identity about a centre in mm.
   explicit RigidTransform(const Point<Dim>& centre = Point<Dim>::Zero());

@@ -6,6 +6,7 @@
 #include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TSplineBasis.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
+#include "Transforms/Splines/ThinPlateBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
 namespace crease {
@@ -262,6 +263,25 @@ std::shared_ptr<const SplineBasis<2>> tspline_from_json(const JsonReader& reader
                                         reader.at("direction_columns").numbers<2, 2>());
 }
 
+template <int Dim>
+Json thin_plate_to_json(const ThinPlateBasis<Dim>& basis) {
+  const ControlPoints<Dim>& centres = basis.centres();
+  return {{"kind", "thin-plate"},
+          {"centres", std::vector<double>(centres.data(), centres.data() + centres.size())},
+          {"lower", point_list<Dim>(basis.bounds().lower)},
+          {"upper", point_list<Dim>(basis.bounds().upper)}};
+}
+
+template <int Dim>
+std::shared_ptr<const SplineBasis<Dim>> thin_plate_from_json(const JsonReader& reader) {
+  const JsonReader centres = reader.at("centres");
+  const auto count = static_cast<Eigen::Index>(centres.size() / Dim);
+  Box<Dim> bounds;
+  bounds.lower = reader.at("lower").template numbers<Dim>();
+  bounds.upper = reader.at("upper").template numbers<Dim>();
+  return std::make_shared<ThinPlateBasis<Dim>>(centres.numbers<Dim, Eigen::Dynamic>(count), bounds);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -271,6 +291,9 @@ nlohmann::json basis_to_json(const SplineBasis<Dim>& basis) {
   }
   if (const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis)) {
     return triangular_to_json(triangular->net());
+  }
+  if (const auto* thin_plate = dynamic_cast<const ThinPlateBasis<Dim>*>(&basis)) {
+    return thin_plate_to_json(*thin_plate);
   }
   if (const auto* nurbs = dynamic_cast<const NurbsBasis<Dim>*>(&basis)) {
     return nurbs_to_json(*nurbs);
@@ -291,6 +314,7 @@ std::shared_ptr<const SplineBasis<Dim>> basis_from_json(const JsonReader& reader
   const std::string kind = reader.at("kind").text();
   if (kind == "tensor") return tensor_from_json<Dim>(reader);
   if (kind == "triangular") return triangular_from_json<Dim>(reader);
+  if (kind == "thin-plate") return thin_plate_from_json<Dim>(reader);
   if (kind == "nurbs") return nurbs_from_json<Dim>(reader);
   if constexpr (Dim == 2) {
     if (kind == "powell-sabin") return powell_sabin_from_json(reader);

@@ -7,8 +7,8 @@
 
 namespace crease {
 
-/// A spline basis as part of a transform file. Entry "kind" is "tensor", "triangular", "nurbs" or
-/// "tspline" (in the plane).
+/// A spline basis as part of a transform file. Entry "kind" is "tensor", "triangular", "nurbs", "thin-plate" or,
+/// in the plane, "powell-sabin" or "tspline".
 /// @throws InvalidInput when the basis is of no kind that files hold.
 template <int Dim>
 nlohmann::json basis_to_json(const SplineBasis<Dim>& basis);

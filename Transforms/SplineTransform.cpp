@@ -18,6 +18,15 @@ BasisValues<Dim> continued(const SplineBasis<Dim>& basis, const Point<Dim>& x) {
 
 }  // namespace
 
+/// u at a point of the domain: value, gradient (OutDim x InDim) and second derivatives.
+template <int InDim, int OutDim>
+struct SplineTransform<InDim, OutDim>::Jet {
+  Vector<OutDim> value = Vector<OutDim>::Zero();
+  Matrix<OutDim, InDim> gradient = Matrix<OutDim, InDim>::Zero();
+  Matrix<OutDim, kNumSecondDerivatives<InDim>> hessian =
+      Matrix<OutDim, kNumSecondDerivatives<InDim>>::Zero();
+};
+
 template <int InDim, int OutDim>
 SplineTransform<InDim, OutDim>::SplineTransform(std::shared_ptr<const SplineBasis<InDim>> basis,
                                                 const Affine& affine)
@@ -25,6 +34,7 @@ SplineTransform<InDim, OutDim>::SplineTransform(std::shared_ptr<const SplineBasi
   if (!basis_) throw InvalidInput("SplineTransform: the basis is null.");
   if (!affine_.finite()) throw InvalidInput("SplineTransform: the affine part is not finite.");
   control_points_.setZero(OutDim, basis_->num_control_points());
+  sum_ = basis_->sum(control_points_);
 }
 
 template <int InDim, int OutDim>
@@ -39,6 +49,7 @@ void SplineTransform<InDim, OutDim>::set_control_points(
     throw InvalidInput("SplineTransform: a control point is not finite.");
   }
   control_points_ = control_points;
+  sum_ = basis_->sum(control_points_);
 }
 
 template <int InDim, int OutDim>
@@ -47,24 +58,38 @@ std::unique_ptr<Transform<InDim, OutDim>> SplineTransform<InDim, OutDim>::clone(
 }
 
 template <int InDim, int OutDim>
-Point<OutDim> SplineTransform<InDim, OutDim>::map(const Point<InDim>& x) const {
-  const auto here = continued(*basis_, x);
-  Point<OutDim> y = affine_(x);
-  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
-    y += here.values[n] * control_points_.col(here.control_points[n]);
+typename SplineTransform<InDim, OutDim>::Jet SplineTransform<InDim, OutDim>::displacement(
+    const Point<InDim>& p, int derivatives) const {
+  Jet u;
+  if (sum_ != nullptr) {
+    const Eigen::MatrixXd sums = sum_->evaluate(p, derivatives);
+    u.value = sums.col(0);
+    if (derivatives > 0) u.gradient = sums.template middleCols<InDim>(1);
+    if (derivatives > 1) u.hessian = sums.template rightCols<kNumSecondDerivatives<InDim>>();
+    return u;
   }
-  return y;
+  const auto here = basis_->evaluate(p, derivatives);
+  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+    const auto& phi = control_points_.col(here.control_points[n]);
+    u.value += here.values[n] * phi;
+    if (derivatives > 0) u.gradient += phi * here.gradients.col(n).transpose();
+    if (derivatives > 1) u.hessian += phi * here.hessians.col(n).transpose();
+  }
+  return u;
+}
+
+template <int InDim, int OutDim>
+Point<OutDim> SplineTransform<InDim, OutDim>::map(const Point<InDim>& x) const {
+  if (basis_->contains(x)) return affine_(x) + displacement(x, 0).value;
+  const Point<InDim> p = basis_->nearest_point(x);
+  const Jet u = displacement(p, 1);
+  return affine_(x) + u.value + u.gradient * (x - p);
 }
 
 template <int InDim, int OutDim>
 Matrix<OutDim, InDim> SplineTransform<InDim, OutDim>::spatial_jacobian(
     const Point<InDim>& x) const {
-  const auto here = basis_->evaluate(basis_->nearest_point(x), 1);
-  Matrix<OutDim, InDim> jacobian = affine_.linear;
-  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
-    jacobian += control_points_.col(here.control_points[n]) * here.gradients.col(n).transpose();
-  }
-  return jacobian;
+  return affine_.linear + displacement(basis_->nearest_point(x), 1).gradient;
 }
 
 template <int InDim, int OutDim>
@@ -72,33 +97,20 @@ typename Transform<InDim, OutDim>::Sample SplineTransform<InDim, OutDim>::sample
     const Point<InDim>& x) const {
   const bool inside = basis_->contains(x);
   const Point<InDim> p = inside ? x : basis_->nearest_point(x);
-  const auto here = basis_->evaluate(p, 1);
-  Vector<OutDim> u = Vector<OutDim>::Zero();
-  Matrix<OutDim, InDim> gradient = Matrix<OutDim, InDim>::Zero();
-  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
-    const auto& phi = control_points_.col(here.control_points[n]);
-    u += here.values[n] * phi;
-    gradient += phi * here.gradients.col(n).transpose();
-  }
-  return {affine_(x) + u + gradient * (x - p), affine_.linear + gradient, inside};
+  const Jet u = displacement(p, 1);
+  return {affine_(x) + u.value + u.gradient * (x - p), affine_.linear + u.gradient, inside};
 }
 
 template <int InDim, int OutDim>
 std::array<Matrix<InDim>, OutDim> SplineTransform<InDim, OutDim>::second_derivatives(
     const Point<InDim>& x) const {
-  const auto here = basis_->evaluate(basis_->nearest_point(x), 2);
+  const Jet u = displacement(basis_->nearest_point(x), 2);
   std::array<Matrix<InDim>, OutDim> result;
-  result.fill(Matrix<InDim>::Zero());
-  for (std::size_t n = 0; n < here.control_points.size(); ++n) {
+  for (int c = 0; c < OutDim; ++c) {
     for (int a = 0, s = 0; a < InDim; ++a) {
-      for (int b = a; b < InDim; ++b, ++s) {
-        for (int c = 0; c < OutDim; ++c) {
-          result[c](a, b) += control_points_(c, here.control_points[n]) * here.hessians(s, n);
-        }
-      }
+      for (int b = a; b < InDim; ++b, ++s) result[c](a, b) = result[c](b, a) = u.hessian(c, s);
     }
   }
-  for (auto& m : result) m.template triangularView<Eigen::StrictlyLower>() = m.transpose();
   return result;
 }
 
@@ -112,6 +124,7 @@ void SplineTransform<InDim, OutDim>::set_parameters(
     const Eigen::Ref<const Eigen::VectorXd>& parameters) {
   check_parameters("SplineTransform", parameters, num_parameters());
   control_points_.reshaped() = parameters;
+  sum_ = basis_->sum(control_points_);
 }
 
 template <int InDim, int OutDim>

@@ -48,11 +48,16 @@ class SplineTransform final : public Transform<InDim, OutDim> {
   void set_parameters(const Eigen::Ref<const Eigen::VectorXd>& parameters) override;
   void add_adjoint(std::span<const Point<InDim>> x, std::span<const Vector<OutDim>> forces,
                    Eigen::Ref<Eigen::VectorXd> gradient) const override;
+  bool linear_in_parameters() const override { return true; }
 
  private:
+  struct Jet;
+  Jet displacement(const Point<InDim>& p, int derivatives) const;
+
   std::shared_ptr<const SplineBasis<InDim>> basis_;
   Affine affine_;
   ControlPoints<OutDim> control_points_;
+  std::shared_ptr<const SplineSum<InDim>> sum_;  // null: the basis offers none
 };
 
 extern template class SplineTransform<2, 2>;

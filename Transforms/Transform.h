@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "Core/Point.h"
@@ -43,6 +44,26 @@ class Transform {
   /// the parameters, which carries forces at mapped points back onto the parameters.
   virtual void add_adjoint(std::span<const Point<InDim>> x, std::span<const Vector<OutDim>> forces,
                            Eigen::Ref<Eigen::VectorXd> gradient) const = 0;
+  /// (dT/dp)^T at some points, num_parameters() x (OutDim x.size()): column OutDim k + a belongs to
+  /// coordinate a of T(x_k). The adjoint of unit forces, unless a class has a faster way.
+  virtual Eigen::MatrixXd parameter_jacobian(std::span<const Point<InDim>> x) const {
+    Eigen::MatrixXd columns =
+        Eigen::MatrixXd::Zero(num_parameters(), OutDim * static_cast<Eigen::Index>(x.size()));
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      for (int a = 0; a < OutDim; ++a) {
+        const Vector<OutDim> unit = Vector<OutDim>::Unit(a);
+        add_adjoint(x.subspan(k, 1), std::span(&unit, 1),
+                    columns.col(OutDim * static_cast<Eigen::Index>(k) + a));
+      }
+    }
+    return columns;
+  }
+  /// Whether T(x) is an affine function of the parameters, so that what they are to do at points can be
+  /// written as linear equations and parameter_jacobian() does not depend on them.
+  virtual bool linear_in_parameters() const { return false; }
+  /// R, symmetric and positive semi-definite, where p^T R p says how rough T is in the sense of its class
+  /// (parameters zero: not at all); nullopt where it knows no such measure.
+  virtual std::optional<Eigen::MatrixXd> roughness_matrix() const { return std::nullopt; }
 };
 
 }  // namespace crease

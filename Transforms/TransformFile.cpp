@@ -6,12 +6,14 @@
 #include "Core/WholeFile.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/Base64.h"
+#include "Transforms/CauchyNavierTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/ItkFiles/ItkConversion.h"
 #include "Transforms/ItkFiles/ReadItkFile.h"
 #include "Transforms/JsonReader.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 #include "Transforms/SplineBasisFile.h"
 #include "Transforms/SplineTransform.h"
 
@@ -53,6 +55,23 @@ Json field_entries(const DisplacementFieldTransform<Dim>& field) {
           {"displacements", {{"encoding", "base64 " + numbers.type}, {"data", numbers.text}}}};
 }
 
+template <typename Kind>
+Json linear_entries(const char* type, const Kind& transform) {
+  return {{"type", type},
+          {"centre", list(transform.centre())},
+          {"parameters", list(transform.parameters())}};
+}
+
+template <int Dim>
+Json elastic_entries(const CauchyNavierTransform<Dim>& body) {
+  return {{"type", "cauchy-navier"},
+          {"affine_matrix_rows", list(body.affine().linear.transpose())},
+          {"affine_offset", list(body.affine().offset)},
+          {"poisson_ratio", body.poisson_ratio()},
+          {"centres", list(body.centres())},
+          {"displacements", list(body.displacements())}};
+}
+
 template <int InDim, int OutDim>
 Json entries(const Transform<InDim, OutDim>& transform) {
   if (const auto* spline = dynamic_cast<const SplineTransform<InDim, OutDim>*>(&transform)) {
@@ -60,14 +79,16 @@ Json entries(const Transform<InDim, OutDim>& transform) {
   }
   if constexpr (InDim == OutDim) {
     if (const auto* affine = dynamic_cast<const AffineTransform<InDim>*>(&transform)) {
-      return {{"type", "affine"},
-              {"centre", list(affine->centre())},
-              {"parameters", list(affine->parameters())}};
+      return linear_entries("affine", *affine);
     }
     if (const auto* rigid = dynamic_cast<const RigidTransform<InDim>*>(&transform)) {
-      return {{"type", "rigid"},
-              {"centre", list(rigid->centre())},
-              {"parameters", list(rigid->parameters())}};
+      return linear_entries("rigid", *rigid);
+    }
+    if (const auto* similarity = dynamic_cast<const SimilarityTransform<InDim>*>(&transform)) {
+      return linear_entries("similarity", *similarity);
+    }
+    if (const auto* body = dynamic_cast<const CauchyNavierTransform<InDim>*>(&transform)) {
+      return elastic_entries(*body);
     }
     if (const auto* field = dynamic_cast<const DisplacementFieldTransform<InDim>*>(&transform)) {
       return field_entries(*field);
@@ -92,10 +113,26 @@ std::unique_ptr<Transform<Dim>> read_linear(const JsonReader& reader) {
 }
 
 template <int InDim, int OutDim>
-std::unique_ptr<Transform<InDim, OutDim>> read_spline(const JsonReader& reader) {
+AffineMap<InDim, OutDim> read_affine_part(const JsonReader& reader) {
   AffineMap<InDim, OutDim> affine;
   affine.linear = reader.at("affine_matrix_rows").numbers<InDim, OutDim>().transpose();
   affine.offset = reader.at("affine_offset").numbers<OutDim>();
+  return affine;
+}
+
+template <int Dim>
+std::unique_ptr<Transform<Dim>> read_elastic(const JsonReader& reader) {
+  const auto n = static_cast<Eigen::Index>(reader.at("centres").size() / Dim);
+  auto transform = std::make_unique<CauchyNavierTransform<Dim>>(
+      reader.at("centres").numbers<Dim, Eigen::Dynamic>(n), reader.at("poisson_ratio").number(),
+      read_affine_part<Dim, Dim>(reader));
+  transform->set_parameters(reader.at("displacements").numbers<Dim, Eigen::Dynamic>(n).reshaped());
+  return transform;
+}
+
+template <int InDim, int OutDim>
+std::unique_ptr<Transform<InDim, OutDim>> read_spline(const JsonReader& reader) {
+  const auto affine = read_affine_part<InDim, OutDim>(reader);
   auto basis = basis_from_json<InDim>(reader.at("basis"));
   const int n = basis->num_control_points();
   auto transform = std::make_unique<SplineTransform<InDim, OutDim>>(std::move(basis), affine);
@@ -139,6 +176,8 @@ std::unique_ptr<Transform<InDim, OutDim>> read(const JsonReader& reader) {
     if (type == "affine") return read_linear<InDim, AffineTransform<InDim>>(reader);
     if (type == "rigid") return read_linear<InDim, RigidTransform<InDim>>(reader);
     if (type == "displacement field") return read_field<InDim>(reader);
+    if (type == "similarity") return read_linear<InDim, SimilarityTransform<InDim>>(reader);
+    if (type == "cauchy-navier") return read_elastic<InDim>(reader);
     if (type == "composite") {
       const JsonReader list = reader.at("parts");
       std::vector<std::unique_ptr<Transform<InDim>>> parts;

@@ -12,7 +12,8 @@ namespace crease {
 struct TransformFileInfo {
   int in_dim = 0;
   int out_dim = 0;
-  std::string type;  ///< "affine", "rigid", "composite", "spline" or "displacement field"
+  /// "affine", "rigid", "similarity", "composite", "spline", "cauchy-navier" or "displacement field".
+  std::string type;
   std::string format = "crease";  ///< or "ITK text", "ITK HDF5", "ITK Matlab"
 };
 

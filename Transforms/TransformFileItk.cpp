@@ -14,6 +14,7 @@
 #include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/ItkFiles/ItkTransform.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 
@@ -60,6 +61,17 @@ ItkTransform to_itk(const DisplacementFieldTransform<Dim>& field) {
   return {itk_name<Dim>("DisplacementField"), itk_grid(field.raster()), field.parameters()};
 }
 
+ItkTransform to_itk(const SimilarityTransform<2>& similarity) {
+  Eigen::VectorXd parameters(4);
+  parameters << similarity.scale(), similarity.angles(), similarity.translation();
+  return {itk_name<2>("Similarity2D"), similarity.centre(), parameters};
+}
+
+/// ITK's Similarity3DTransform has a versor, which loses half its digits near half turns.
+ItkTransform to_itk(const SimilarityTransform<3>& similarity) {
+  return to_itk(AffineTransform<3>(similarity.affine_map(), similarity.centre()));
+}
+
 /// x + v(x). @param v  control points; @param basis  of degree 1 to 3.
 template <int Dim>
 ItkTransform to_itk(const TensorBSplineBasis<Dim>& basis, const ControlPoints<Dim>& v) {
@@ -102,6 +114,10 @@ bool append(const Transform<Dim>& transform, ItkParts& parts) {
   }
   if (const auto* field = dynamic_cast<const DisplacementFieldTransform<Dim>*>(&transform)) {
     parts.push_back(to_itk(*field));
+    return true;
+  }
+  if (const auto* similarity = dynamic_cast<const SimilarityTransform<Dim>*>(&transform)) {
+    parts.push_back(to_itk(*similarity));
     return true;
   }
   const auto* composite = dynamic_cast<const CompositeTransform<Dim>*>(&transform);

@@ -6,8 +6,8 @@
 
 namespace crease {
 
-/// Whether ITK has the same transform, so that save_itk_transform() can write it: rigid and affine maps,
-/// displacement fields, tensor-product B-splines of degree 1 to 3 whose affine part can be inverted, and
+/// Whether ITK has the same transform, so that save_itk_transform() can write it: rigid, similarity and affine
+/// maps, displacement fields, tensor-product B-splines of degree 1 to 3 whose affine part can be inverted, and
 /// chains of these.
 template <int Dim>
 bool has_itk_equivalent(const Transform<Dim>& transform);
@@ -16,6 +16,7 @@ bool has_itk_equivalent(const Transform<Dim>& transform);
 ///
 ///     RigidTransform      Euler2DTransform, Euler3DTransform (exact near half turns too, where a
 ///                         versor loses half its digits)
+///     SimilarityTransform Similarity2DTransform; in 3D an AffineTransform, for the same reason
 ///     AffineTransform     AffineTransform
 ///     SplineTransform     BSplineTransform of u when A is the identity; else a CompositeTransform,
 ///                         T(x) = A(x) + u(x) = A(x + v(x)) with v = A_lin^-1 u: first the

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "Transforms/LandmarkFits.h"
+
 namespace crease {
 namespace {
 
@@ -25,8 +27,9 @@ double smallest_gap(const std::vector<RigidBody>& bodies, const std::vector<Poin
   return gap;
 }
 
-ThinPlateMap background(const std::vector<RigidBody>& bodies, const std::vector<Point<2>>& anchors,
-                        double spacing, double turn_share) {
+SplineTransform<2> background(const std::vector<RigidBody>& bodies,
+                              const std::vector<Point<2>>& anchors, double spacing,
+                              double turn_share) {
   std::vector<Point<2>> from = anchors, to = anchors;
   for (const auto& body : bodies) {
     RigidMotion followed = body.motion;
@@ -37,7 +40,7 @@ ThinPlateMap background(const std::vector<RigidBody>& bodies, const std::vector<
       to.push_back(motion(p));
     }
   }
-  return ThinPlateMap(from, to);
+  return fit_thin_plate<2>(from, to);
 }
 
 }  // namespace
@@ -95,7 +98,7 @@ Point<2> RigidBodiesMap::operator()(const Point<2>& x) const {
       nearest = k;
     }
   }
-  Point<2> soft = background_(x);
+  Point<2> soft = background_.map(x);
   if (distance >= reach_) return soft;
   const double share = 1 - distance / reach_;
   return soft + share * share * (motions_[nearest](x) - soft);

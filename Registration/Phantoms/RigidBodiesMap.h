@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "Registration/Phantoms/RoundedPolygon.h"
-#include "Registration/Phantoms/ThinPlateMap.h"
 #include "Transforms/AffineMap.h"
+#include "Transforms/SplineTransform.h"
 
 namespace crease {
 
@@ -57,7 +57,7 @@ class RigidBodiesMap {
   std::vector<AffineMap<2>> motions_;
   std::vector<AffineMap<2>> inverse_motions_;
   double reach_;  // D
-  ThinPlateMap background_;
+  SplineTransform<2> background_;
 };
 
 }  // namespace crease

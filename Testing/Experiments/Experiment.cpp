@@ -33,7 +33,7 @@ Matrix<2> rotation(double angle_deg) {
 
 }  // namespace
 
-BodyError body_error(const SplineTransform<2>& transform, const Phantom& phantom,
+BodyError body_error(const Transform<2>& transform, const Phantom& phantom,
                      const PhantomBody& body) {
   BodyError error;
   std::vector<Point<2>> from, to;
@@ -55,7 +55,7 @@ BodyError body_error(const SplineTransform<2>& transform, const Phantom& phantom
   return error;
 }
 
-JacobianRange jacobian_range(const SplineTransform<2>& transform, const Raster<2>& raster) {
+JacobianRange jacobian_range(const Transform<2>& transform, const Raster<2>& raster) {
   JacobianRange range{HUGE_VAL, -HUGE_VAL};
   for (int j = 0; j < raster.size[1]; ++j) {
     for (int i = 0; i < raster.size[0]; ++i) {

@@ -21,14 +21,14 @@ struct BodyError {
   double angle_error_deg = 0;  ///< of the best rigid fit
   double shift_error_mm = 0;   ///< of the best rigid fit, at the body's centre
 };
-BodyError body_error(const SplineTransform<2>& transform, const Phantom& phantom,
+BodyError body_error(const Transform<2>& transform, const Phantom& phantom,
                      const PhantomBody& body);
 
 /// Range of det grad T over the pixels.
 struct JacobianRange {
   double min = 0, max = 0;
 };
-JacobianRange jacobian_range(const SplineTransform<2>& transform, const Raster<2>& raster);
+JacobianRange jacobian_range(const Transform<2>& transform, const Raster<2>& raster);
 
 /// The phantom's square domain in a structured union-jack triangulation whose edges run along the
 /// bodies' outlines.

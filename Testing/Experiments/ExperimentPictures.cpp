@@ -7,7 +7,7 @@
 namespace crease::experiments {
 
 void write_pictures(const std::filesystem::path& folder, const std::string& name,
-                    const Phantom& phantom, const SplineTransform<2>& transform) {
+                    const Phantom& phantom, const Transform<2>& transform) {
   const auto& raster = phantom.fixed.raster();
   const auto moving = make_interpolator(phantom.moving);
   Image<float, 2> warped(raster), determinants(raster);

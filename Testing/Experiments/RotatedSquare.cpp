@@ -36,7 +36,7 @@ Outcome run(const Phantom& phantom, bool creases, const std::filesystem::path& f
   }
   const BodyError body = body_error(*result.transform, phantom, phantom.bodies.front());
   outcome.body_rms = body.rms_mm / unit;
-  outcome.figures = {{"control_points", result.transform->basis().num_control_points()},
+  outcome.figures = {{"control_points", result.transform->num_parameters() / 2},
                      {"e_r", outcome.rigidity},
                      {"e_s", outcome.bending},
                      {"det", {jacobian.min, jacobian.max}},

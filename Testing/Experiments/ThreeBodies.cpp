@@ -63,7 +63,7 @@ Outcome run(const Phantom& phantom, std::shared_ptr<const SplineBasis<2>> basis,
   for (double error : result.landmark_errors_mm) {
     outcome.landmark_error = std::max(outcome.landmark_error, error);
   }
-  outcome.figures = {{"control_points", result.transform->basis().num_control_points()},
+  outcome.figures = {{"control_points", result.transform->num_parameters() / 2},
                      {"e_i", result.metric_after * range * range / (unit * unit)},
                      {"e_i_unregistered", result.metric_before * range * range / (unit * unit)},
                      {"e_r", outcome.rigidity},

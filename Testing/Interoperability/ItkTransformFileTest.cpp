@@ -13,6 +13,7 @@
 #include "Transforms/Domains/KnotPlacement.h"
 #include "Transforms/Domains/StructuredTriangulation.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/TransformFileItk.h"
 
@@ -79,6 +80,13 @@ TYPED_TEST_SUITE(ItkTransformFileOf, Dimensions);
 TYPED_TEST(ItkTransformFileOf, AffineMapsAreTheSame) {
   constexpr int Dim = TypeParam::value;
   this->expect_same(AffineTransform<Dim>(this->skew_map(), this->centre()), "affine");
+}
+
+TYPED_TEST(ItkTransformFileOf, SimilaritiesAreTheSame) {
+  constexpr int Dim = TypeParam::value;
+  SimilarityTransform<Dim> similarity(this->centre());
+  similarity.set_parameters(Eigen::VectorXd::LinSpaced(similarity.num_parameters(), 0.4, 5.0));
+  this->expect_same(similarity, "a similarity");
 }
 
 TYPED_TEST(ItkTransformFileOf, SplinesAreTheSameInTheirDomain) {

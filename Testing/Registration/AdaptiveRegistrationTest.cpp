@@ -85,7 +85,7 @@ TEST_F(AdaptiveRegistration, DividesPatchesWhereTheMotionIs) {
   ASSERT_FALSE(adaptive.rounds.empty());
   EXPECT_LT(error(adaptive.registration), 0.6 * error(coarse.registration));
   // The motion takes up a seventh of the image; patches as fine everywhere would be five times as many.
-  const auto& basis = adaptive.registration.transform->basis();
+  const auto& basis = adaptive.registration.spline()->basis();
   EXPECT_LT(basis.edge_length(middle), 0.6 * kEdge);
   EXPECT_GT(basis.edge_length({112, 112}), 0.6 * kEdge);
 }

@@ -51,6 +51,24 @@ TEST(InitialAlignment, FindsAnAffineMap) {
   EXPECT_LT(testing::rms_difference(raster, found.map, truth, 0), 0.02);
 }
 
+TEST(InitialAlignment, FindsASimilarity) {
+  const auto raster = testing::raster_of<2>(160);
+  const auto truth = testing::about_centre<2>(raster, 1.06 * turn(-7), {2, -1});
+  const auto found = align_to<2>(truth, AlignmentSearch::kSimilarity, 160);
+  EXPECT_LT(testing::rms_difference(raster, found.map, truth, 0), 0.02);
+  const Matrix<2> square = found.map.linear.transpose() * found.map.linear;
+  EXPECT_LT((square - square(0, 0) * Matrix<2>::Identity()).norm(), 1e-12);  // no shear
+}
+
+TEST(InitialAlignment, FindsASimilarityInSpace) {
+  const auto raster = testing::raster_of<3>(40);
+  const Matrix<3> rotation =
+      Eigen::AngleAxisd(0.08, Vector<3>(1, 2, 3).normalized()).toRotationMatrix();
+  const auto truth = testing::about_centre<3>(raster, 0.95 * rotation, {1.0, -0.6, 0.4});
+  const auto found = align_to<3>(truth, AlignmentSearch::kSimilarity, 40);
+  EXPECT_LT(testing::rms_difference(raster, found.map, truth, 0), 0.02);
+}
+
 TEST(InitialAlignment, FindsARigidMotionInSpace) {
   const auto raster = testing::raster_of<3>(40);
   const Matrix<3> rotation =
@@ -73,7 +91,8 @@ TEST(InitialAlignment, FindsAnAffineMapInSpace) {
 TEST(InitialAlignment, LeavesIdenticalImagesAlone) {
   const auto raster = testing::raster_of<2>(96);
   const auto image = testing::scene_image<2>(raster);
-  for (auto search : {AlignmentSearch::kNone, AlignmentSearch::kRigid, AlignmentSearch::kAffine}) {
+  for (auto search : {AlignmentSearch::kNone, AlignmentSearch::kRigid, AlignmentSearch::kSimilarity,
+                      AlignmentSearch::kAffine}) {
     for (auto start : {AlignmentStart::kMoments, AlignmentStart::kCentres}) {
       const auto found =
           align<2>(image, image, nullptr, nullptr, {}, {.start = start, .search = search});
@@ -92,6 +111,20 @@ TEST(InitialAlignment, StartsFromTheLandmarksFit) {
   const auto found =
       align<2>(image, image, nullptr, nullptr, landmarks, {.start = AlignmentStart::kLandmarks});
   EXPECT_LT(testing::rms_difference(raster, found.map, truth, 0), 1e-9);
+}
+
+TEST(InitialAlignment, StartsFromTheLandmarksSimilarity) {
+  const auto raster = testing::raster_of<2>(64);
+  const auto truth = testing::about_centre<2>(raster, 1.3 * turn(70), {5, 3});
+  const auto fixed = testing::image_of<2>(raster, truth);
+  const auto moving = testing::scene_image<2>(raster);
+  Landmarks<2> landmarks;
+  landmarks.fixed = {{10, 10}, {50, 12}};
+  for (const auto& p : landmarks.fixed) landmarks.moving.push_back(truth(p));
+  const auto found =
+      align<2>(fixed, moving, nullptr, nullptr, landmarks,
+               {.start = AlignmentStart::kLandmarks, .search = AlignmentSearch::kSimilarity});
+  EXPECT_LT(testing::rms_difference(raster, found.map, truth, 0), 0.02);
 }
 
 TEST(InitialAlignment, NamesBothBoxesOfImagesThatDoNotOverlap) {

@@ -16,7 +16,9 @@
 #include "Testing/Transforms/SampleBases.h"
 #include "Testing/Transforms/SampleSplines.h"
 #include "Transforms/AffineTransform.h"
+#include "Transforms/CauchyNavierTransform.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 #include "Transforms/SplineTransform.h"
 
 namespace crease {
@@ -73,6 +75,9 @@ std::vector<std::pair<std::string, std::unique_ptr<Transform<Dim>>>> transforms(
   std::vector<std::pair<std::string, std::unique_ptr<Transform<Dim>>>> all;
   all.emplace_back("rigid", std::make_unique<RigidTransform<Dim>>(centre));
   all.emplace_back("affine", std::make_unique<AffineTransform<Dim>>(centre));
+  all.emplace_back("similarity", std::make_unique<SimilarityTransform<Dim>>(centre));
+  all.emplace_back("elastic body", std::make_unique<CauchyNavierTransform<Dim>>(
+                                       testing::jittered_centres<Dim>(box, 3)));
   for (const auto& [name, basis, integrates] : testing::sample_bases<Dim>(box)) {
     all.emplace_back(name, std::make_unique<SplineTransform<Dim>>(basis));
   }
@@ -86,8 +91,9 @@ Eigen::VectorXd random_step(const Transform<Dim>& transform, double size, unsign
   Eigen::VectorXd step = size * numbers.columns<1>(transform.num_parameters()).transpose();
   const bool rigid = dynamic_cast<const RigidTransform<Dim>*>(&transform) != nullptr;
   const bool affine = dynamic_cast<const AffineTransform<Dim>*>(&transform) != nullptr;
-  // Their first parameters are angles or matrix entries, the last Dim shifts.
-  if (rigid || affine) step.head(step.size() - Dim) *= 0.03;
+  const bool similar = dynamic_cast<const SimilarityTransform<Dim>*>(&transform) != nullptr;
+  // Their first parameters are angles, scales or matrix entries, the last Dim shifts.
+  if (rigid || affine || similar) step.head(step.size() - Dim) *= 0.03;
   return step;
 }
 

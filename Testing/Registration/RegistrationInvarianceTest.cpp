@@ -27,7 +27,7 @@ struct Problem {
   KnotNet<2> net;
   Landmarks<2> landmarks;
 
-  std::shared_ptr<const SplineTransform<2>> solve(bool with_images) const {
+  std::shared_ptr<const Transform<2>> solve(bool with_images) const {
     Registration<2> registration = with_images ? Registration<2>(fixed, moving) : Registration<2>();
     registration.basis(std::make_shared<TriangularBSplineBasis<2>>(net))
         .initial({})

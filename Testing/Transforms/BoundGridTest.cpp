@@ -1,12 +1,14 @@
 // A basis bound to a raster agrees with the basis itself, whichever way it is bound.
 #include "Transforms/BoundGrid.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Testing/Transforms/SampleCentres.h"
 #include "Testing/Transforms/SampleNurbs.h"
 #include "Transforms/Domains/StructuredTriangulation.h"
+#include "Transforms/LatticeGrid.h"
 #include "Transforms/SparseRowGrid.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TensorBSplineGrid.h"
@@ -33,6 +35,7 @@ Raster<Dim> raster_over(const TensorLattice<Dim>& lattice) {
 template <int Dim, int Degree, bool Separable>
 struct Kind {
   static constexpr int kDim = Dim;
+  static constexpr bool kEverywhere = false, kOnLattice = false;
   static std::shared_ptr<const SplineBasis<Dim>> make() {
     return testing::small_basis<Dim>(Degree);
   }
@@ -50,6 +53,7 @@ struct Kind {
 template <bool Own>
 struct PowellSabinKind {
   static constexpr int kDim = 2;
+  static constexpr bool kEverywhere = false, kOnLattice = false;
   static std::shared_ptr<const SplineBasis<2>> make() {
     const auto lattice = testing::small_lattice<2>();
     Box<2> box;
@@ -69,6 +73,7 @@ struct PowellSabinKind {
 template <int Dim>
 struct Bound {
   static constexpr int kDim = Dim;
+  static constexpr bool kEverywhere = false, kOnLattice = false;
   static std::unique_ptr<BoundGrid<Dim>> bind(const SplineBasis<Dim>& basis,
                                               const Raster<Dim>& raster) {
     return basis.bind(raster);
@@ -99,6 +104,27 @@ struct TSpline : Bound<2> {
   }
 };
 
+/// Thin plates, whose domain is all of space, by tables or through a lattice.
+template <int Dim, bool OnLattice>
+struct ThinPlates {
+  static constexpr int kDim = Dim;
+  static constexpr bool kEverywhere = true, kOnLattice = OnLattice;
+  static constexpr double kStep = 1.4;  // mm: some small blocks
+  static std::shared_ptr<const SplineBasis<Dim>> make() {
+    Box<Dim> box;
+    for (const auto& x : testing::points_inside<Dim>(testing::small_lattice<Dim>(), 50)) box.add(x);
+    return testing::thin_plates_over<Dim>(box, 3);
+  }
+  static std::unique_ptr<BoundGrid<Dim>> bind(const SplineBasis<Dim>& basis,
+                                              const Raster<Dim>& raster) {
+    if (!OnLattice) return std::make_unique<SparseRowGrid<Dim>>(basis, raster);
+    const auto& plates = dynamic_cast<const ThinPlateBasis<Dim>&>(basis);
+    return std::make_unique<LatticeGrid<Dim>>(
+        [&](const ControlPoints<Dim>& x) { return plates.values(x); }, plates.num_control_points(),
+        raster, plates.mean_edge_length() / 8, kStep);
+  }
+};
+
 }  // namespace
 
 template <typename T>
@@ -109,6 +135,9 @@ class BoundGridSuite : public ::testing::Test {
   Raster<kDim> raster = raster_over<kDim>(testing::small_lattice<kDim>());
   std::unique_ptr<BoundGrid<kDim>> grid = T::bind(*basis, raster);
   ControlPoints<kDim> phi = testing::Numbers(2).columns<kDim>(basis->num_control_points(), 3.0);
+
+  /// Of single precision, or of the lattice: in 3D plates have kinks, -r, that it rounds off.
+  static constexpr double kMapError = !T::kOnLattice ? 2e-6 : kDim == 2 ? 0.1 : 0.4;
 
   Point<kDim> sample(std::int64_t row, int i) const {
     return raster.row_start(row) + i * raster.index_to_point().col(0);
@@ -149,11 +178,13 @@ class BoundGridSuite : public ::testing::Test {
   }
 };
 
-using Kinds = ::testing::Types<Kind<2, 1, true>, Kind<2, 2, true>, Kind<2, 3, true>,
-                               Kind<2, 4, true>, Kind<2, 5, true>, Kind<3, 1, true>,
-                               Kind<3, 3, true>, Kind<2, 3, false>, Kind<3, 2, false>,
-                               PowellSabinKind<false>, PowellSabinKind<true>, Nurbs<2, 3, false>,
-                               Nurbs<2, 3, true>, Nurbs<3, 2, true>, NurbsTables<2>, TSpline>;
+using Kinds =
+    ::testing::Types<Kind<2, 1, true>, Kind<2, 2, true>, Kind<2, 3, true>, Kind<2, 4, true>,
+                     Kind<2, 5, true>, Kind<3, 1, true>, Kind<3, 3, true>, Kind<2, 3, false>,
+                     Kind<3, 2, false>, PowellSabinKind<false>, PowellSabinKind<true>,
+                     Nurbs<2, 3, false>, Nurbs<2, 3, true>, Nurbs<3, 2, true>, NurbsTables<2>,
+                     TSpline, ThinPlates<2, false>, ThinPlates<3, false>, ThinPlates<2, true>,
+                     ThinPlates<3, true>>;
 TYPED_TEST_SUITE(BoundGridSuite, Kinds);
 
 TYPED_TEST(BoundGridSuite, CoversTheSamplesOfTheDomain) {
@@ -170,7 +201,7 @@ TYPED_TEST(BoundGridSuite, CoversTheSamplesOfTheDomain) {
     }
   }
   EXPECT_GT(covered, 0);
-  EXPECT_LT(covered, this->raster.num_samples());
+  EXPECT_EQ(covered < this->raster.num_samples(), !TypeParam::kEverywhere);
 }
 
 TYPED_TEST(BoundGridSuite, MapsAsTheBasisDoes) {
@@ -184,7 +215,7 @@ TYPED_TEST(BoundGridSuite, MapsAsTheBasisDoes) {
     for (int i = begin; i < end; ++i) {
       const auto b = this->basis->evaluate(this->sample(row, i));
       const Vector<TypeParam::kDim> u = this->phi(Eigen::all, b.control_points) * b.values;
-      for (int a = 0; a < TypeParam::kDim; ++a) ASSERT_NEAR(out[a][i], u[a], 2e-6);
+      for (int a = 0; a < TypeParam::kDim; ++a) ASSERT_NEAR(out[a][i], u[a], this->kMapError);
     }
     for (int i = 0; i < begin; ++i) EXPECT_EQ(out[0][i], 77);
   }
@@ -226,10 +257,12 @@ TYPED_TEST(BoundGridSuite, AdjointMatchesTheBasisPointByPoint) {
       }
     }
   }
-  EXPECT_LT((this->adjoint() - expected).cwiseAbs().maxCoeff(), 2e-6);
+  const double size = TypeParam::kOnLattice ? expected.cwiseAbs().maxCoeff() : 1;
+  EXPECT_LT((this->adjoint() - expected).cwiseAbs().maxCoeff(), this->kMapError * size);
 }
 
 TYPED_TEST(BoundGridSuite, CurvatureIsTheSumOverBlocks) {
+  if (TypeParam::kOnLattice) GTEST_SKIP() << "takes larger blocks";
   constexpr int kDim = TypeParam::kDim, kBlock = CurvatureBlocks<kDim>::kBlock;
   CurvatureBlocks<kDim> blocks(this->raster.size);
   testing::Numbers numbers(9);
@@ -308,6 +341,54 @@ TYPED_TEST(BoundGridSuite, SameBytesOnAnyNumberOfThreads) {
     EXPECT_EQ(one.second, many.second);
   }
   set_num_threads(0);
+}
+
+// One curvature everywhere: the larger blocks' middles stand for all samples.
+template <int Dim>
+void expect_gathered_curvature() {
+  const auto basis = ThinPlates<Dim, true>::basis();
+  const auto raster = raster_over<Dim>(testing::small_lattice<Dim>());
+  const auto grid = ThinPlates<Dim, true>::bind(*basis, raster);
+  CurvatureBlocks<Dim> blocks(raster.size);
+  for (std::size_t s = 0; s < blocks.sums.size(); ++s) {
+    std::ranges::fill(blocks.sums[s], static_cast<float>(1 + s));
+  }
+  const CurvaturePoints<Dim> points(raster, ThinPlates<Dim, true>::kStep);
+  BlockHessian<Dim> hessian(basis->pattern()), expected(basis->pattern());
+  grid->add_curvature(blocks, 0.5, hessian);
+  double gathered = 0;
+  for (Eigen::Index q = 0; q < points.points().cols(); ++q) {
+    gathered += points.sums(blocks, 0)[q];
+    const auto at = basis->evaluate(points.points().col(q));
+    for (std::size_t i = 0; i < at.control_points.size(); ++i) {
+      for (std::size_t k = 0; k <= i; ++k) {
+        Matrix<Dim> g;
+        for (int a = 0, s = 0; a < Dim; ++a) {
+          for (int c = a; c < Dim; ++c, ++s) {
+            g(a, c) = g(c, a) = 0.5 * points.sums(blocks, s)[q];
+          }
+        }
+        expected.add(at.control_points[i], at.control_points[k], at.values[i] * at.values[k] * g);
+      }
+    }
+  }
+  EXPECT_EQ(gathered, static_cast<double>(blocks.sums[0].size()));
+  EXPECT_LT(points.points().cols(), std::ssize(blocks.sums[0]));
+  EXPECT_LT((hessian.to_sparse() - expected.to_sparse()).norm(),
+            1e-10 * expected.to_sparse().norm());
+}
+
+TEST(LatticeGrid, GathersCurvatureInLargerBlocks) {
+  expect_gathered_curvature<2>();
+  expect_gathered_curvature<3>();
+}
+
+TEST(LatticeGrid, RefusesMoreThanFourGigabytes) {
+  Raster<3> raster;
+  raster.size.fill(128);
+  const auto none = [](const ControlPoints<3>& x) { return Eigen::MatrixXd(0, x.cols()); };
+  EXPECT_THAT([&] { LatticeGrid<3>(none, 512, raster, 1.2, 20.0); },
+              ::testing::ThrowsMessage<InvalidInput>(::testing::HasSubstr("fewer centres")));
 }
 
 TEST(TensorBSplineGrid, IsChosenForAlignedRastersOnly) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Testing/Transforms/Domains/SampleDomains.h"
+#include "Testing/Transforms/SampleCentres.h"
 #include "Testing/Transforms/SampleNurbs.h"
 #include "Transforms/Domains/KnotPlacement.h"
 #include "Transforms/Domains/Mesher.h"
@@ -88,7 +89,8 @@ inline KnotNet<2> renumbered(const KnotNet<2>& net) {
 template <int Dim>
 std::vector<SampleBasis<Dim>> sample_bases(const Box<Dim>& box) {
   std::vector<SampleBasis<Dim>> bases = {{"tensor, quadratic", tensor_over<Dim>(box, 3, 2)},
-                                         {"tensor, cubic", tensor_over<Dim>(box, 3, 3)}};
+                                         {"tensor, cubic", tensor_over<Dim>(box, 3, 3)},
+                                         {"thin plates", thin_plates_over<Dim>(box, 3)}};
   const auto lattice = lattice_over<Dim>(box, 3);
   bases.push_back(
       {"NURBS, equal weights", std::make_shared<NurbsBasis<Dim>>(nurbs_net<Dim>(lattice, 2))});

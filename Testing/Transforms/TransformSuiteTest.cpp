@@ -4,12 +4,15 @@
 #include <filesystem>
 
 #include "Core/Error.h"
+#include "Testing/Transforms/SampleCentres.h"
 #include "Testing/Transforms/SampleNurbs.h"
 #include "Testing/Transforms/Splines/TestNets.h"
 #include "Transforms/AffineTransform.h"
+#include "Transforms/CauchyNavierTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/TransformFile.h"
@@ -39,6 +42,40 @@ struct Rigid {
   static constexpr int kIn = Dim, kOut = Dim;
   static std::unique_ptr<Transform<Dim>> make() {
     return std::make_unique<RigidTransform<Dim>>(centre<Dim>());
+  }
+};
+
+template <int Dim>
+struct Similarity {
+  static constexpr int kIn = Dim, kOut = Dim;
+  static std::unique_ptr<Transform<Dim>> make() {
+    return std::make_unique<SimilarityTransform<Dim>>(centre<Dim>());
+  }
+};
+
+/// The box of the points of all tests, and some more.
+template <int Dim>
+Box<Dim> test_box() {
+  Box<Dim> box;
+  for (const auto& x : testing::points_inside<Dim>(testing::small_lattice<Dim>(), 50)) box.add(x);
+  return box;
+}
+
+template <int Dim>
+struct ThinPlate {
+  static constexpr int kIn = Dim, kOut = Dim;
+  static std::unique_ptr<Transform<Dim>> make() {
+    return std::make_unique<SplineTransform<Dim>>(
+        testing::thin_plates_over<Dim>(test_box<Dim>(), 3));
+  }
+};
+
+template <int Dim>
+struct CauchyNavier {
+  static constexpr int kIn = Dim, kOut = Dim;
+  static std::unique_ptr<Transform<Dim>> make() {
+    return std::make_unique<CauchyNavierTransform<Dim>>(
+        testing::jittered_centres<Dim>(test_box<Dim>(), 3), 0.4);
   }
 };
 
@@ -148,11 +185,13 @@ class TransformSuite : public ::testing::Test {
   }
 };
 
-using Kinds = ::testing::Types<Affine<2>, Affine<3>, Rigid<2>, Rigid<3>, TensorSpline<2, 2>,
-                               TensorSpline<2, 3>, TensorSpline<2, 5>, TensorSpline<3, 3>,
-                               TriangularSpline<2>, TriangularSpline<3>, PowellSabinSpline,
-                               Nurbs<2, 2>, Nurbs<2, 3>, Nurbs<3, 3>, TSpline<3>, TSpline<5>,
-                               TensorShell, Field<2>, Field<3>, Composite<2>, Composite<3>>;
+using Kinds =
+    ::testing::Types<Affine<2>, Affine<3>, Rigid<2>, Rigid<3>, Similarity<2>, Similarity<3>,
+                     ThinPlate<2>, ThinPlate<3>, CauchyNavier<2>, CauchyNavier<3>,
+                     TensorSpline<2, 2>, TensorSpline<2, 3>, TensorSpline<2, 5>, TensorSpline<3, 3>,
+                     TriangularSpline<2>, TriangularSpline<3>, PowellSabinSpline, Nurbs<2, 2>,
+                     Nurbs<2, 3>, Nurbs<3, 3>, TSpline<3>, TSpline<5>, TensorShell, Field<2>,
+                     Field<3>, Composite<2>, Composite<3>>;
 TYPED_TEST_SUITE(TransformSuite, Kinds);
 
 TYPED_TEST(TransformSuite, IsTheIdentityAtRest) {
@@ -203,6 +242,41 @@ TYPED_TEST(TransformSuite, AdjointIsTheTransposedJacobianByParameters) {
       }
     }
     EXPECT_NEAR(gradient.dot(direction), difference, 1e-7 * (1 + std::abs(difference)));
+  }
+}
+
+TYPED_TEST(TransformSuite, ParameterJacobianHoldsTheAdjointsOfUnitForces) {
+  const auto transform = this->moved();
+  const auto x = this->points(5);
+  const Eigen::MatrixXd jacobian = transform->parameter_jacobian(x);
+  ASSERT_EQ(jacobian.rows(), transform->num_parameters());
+  ASSERT_EQ(jacobian.cols(), TypeParam::kOut * std::ssize(x));
+  Numbers numbers(3);
+  std::vector<Vector<TypeParam::kOut>> forces;
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(jacobian.rows());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    forces.push_back(numbers.columns<TypeParam::kOut>(1));
+    expected += jacobian.middleCols<TypeParam::kOut>(TypeParam::kOut * k) * forces.back();
+  }
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(transform->num_parameters());
+  transform->add_adjoint(x, forces, gradient);
+  EXPECT_LT((gradient - expected).norm(), 1e-12 * gradient.norm());
+}
+
+TYPED_TEST(TransformSuite, SaysTrulyThatItIsLinearInItsParameters) {
+  const auto transform = this->moved();
+  const auto x = this->points(1)[0];
+  const Eigen::VectorXd p = transform->parameters();
+  const Eigen::VectorXd step = Numbers(4).columns<1>(p.size(), 0.3).transpose();
+  const auto at = [&](double t) {
+    transform->set_parameters(p + t * step);
+    return transform->map(x);
+  };
+  const double bend = (at(1) - 2 * at(0) + at(-1)).norm();
+  if (transform->linear_in_parameters()) {
+    EXPECT_LT(bend, 1e-12);
+  } else {
+    EXPECT_GT(bend, 1e-6);
   }
 }
 

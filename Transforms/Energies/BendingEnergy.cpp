@@ -26,6 +26,9 @@ Eigen::SparseMatrix<double> bending_matrix(const SplineBasis<Dim>& basis,
         "energy; "
         "use the DirichletEnergy or a higher degree.");
   }
+  if (!weights || weights.is_constant(-1, 0.0)) {  // such a basis has no regions
+    if (const auto closed = basis.bending_matrix()) return closed->sparseView(1.0, 0.0);
+  }
   WeightRange range;
   auto matrix = assemble_scalar_matrix<Dim>(
       basis, basis.product_degree(2, 2), 2,

@@ -11,7 +11,8 @@ namespace crease {
 /// tissue is soft, not inside rigid bodies, and not in the bending gaps of creases.
 ///
 /// It is quadratic: K_ik = int (1 - w)^2 sum_ab B_i,ab B_k,ab dx is integrated once, cell by cell (exactly
-/// where w is constant in every cell). The affine part of T does not bend. Unit: mm^2 in 2D, mm^3 in 3D, over mm^2.
+/// where w is constant in every cell). A basis that knows K in closed form (SplineBasis::bending_matrix)
+/// gives it where no weights are asked for: then the integral is over all of space. The affine part of T does not bend. Unit: mm^2 in 2D, mm^3 in 3D, over mm^2.
 ///
 /// Source: dissertation, (3.7).
 template <int Dim>

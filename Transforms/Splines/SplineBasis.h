@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,16 @@ struct QuadratureElement {
   std::vector<Eigen::MatrixXd> hessians;  ///< kNumSecondDerivatives matrices k x q, or empty
 };
 
+/// u(x) = sum_i phi_i B_i(x) for control points that stay as they are.
+template <int Dim>
+class SplineSum {
+ public:
+  virtual ~SplineSum() = default;
+  /// Row a belongs to coordinate a of phi; column 0 holds u, then, for derivatives up to 1 and 2, Dim
+  /// columns its gradient and kNumSecondDerivatives columns its second derivatives.
+  virtual Eigen::MatrixXd evaluate(const Point<Dim>& x, int derivatives) const = 0;
+};
+
 /// Basis functions B_i on a domain that sum to 1 and contain the affine maps: what a spline transform
 /// is made of. Immutable; one basis may serve many transforms and threads.
 template <int Dim>
@@ -81,6 +92,13 @@ class SplineBasis {
   /// derivative jumps it is a one-sided limit from within the domain, the same for all functions.
   /// @throws InvalidInput when x is outside the domain.
   virtual BasisValues<Dim> evaluate(const Point<Dim>& x, int derivatives = 0) const = 0;
+  /// Control points bound once, for many x: what a basis offers whose functions cost more one by one than
+  /// their sum does. Null: evaluate() is the way.
+  /// @param control_points  one column per control point, any number of rows.
+  virtual std::unique_ptr<SplineSum<Dim>> sum(
+      const Eigen::Ref<const Eigen::MatrixXd>& /*control_points*/) const {
+    return nullptr;
+  }
   /// Control points of the identity map (Greville points): sum_i g_i B_i(x) = x.
   virtual ControlPoints<Dim> greville_points() const = 0;
   /// Cells that cover the domain, each with a Gauss rule exact for polynomials of the degree given, and
@@ -88,6 +106,9 @@ class SplineBasis {
   virtual std::vector<QuadratureElement<Dim>> quadrature(
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const = 0;
+  /// int sum_ab B_i,ab B_k,ab dx in closed form, n x n, for a basis whose functions are defined in all of
+  /// space and bend there as a whole; nullopt: integrate by quadrature().
+  virtual std::optional<Eigen::MatrixXd> bending_matrix() const { return std::nullopt; }
   /// Pairs i <= k of control points whose functions overlap: the sparsity of any local energy.
   virtual std::vector<std::pair<int, int>> couplings() const = 0;
   /// The same as a pattern, made at the first call and kept.

@@ -208,7 +208,7 @@ AdaptiveResult<2> run_adaptively(const RegisterOptions& options, const RegisterI
   };
   parts.most_rounds = options.adapt;
   AdaptiveResult<2> result = register_adaptively(parts, progress.callback());
-  basis = of(&result.registration.transform->basis());
+  basis = of(&result.registration.spline()->basis());
   return result;
 }
 

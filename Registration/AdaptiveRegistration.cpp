@@ -41,7 +41,7 @@ AdaptiveResult<Dim> register_adaptively(const AdaptiveComposition<Dim>& composit
     if (report.expected_gain <= kLeastGain * coarse.cost) break;
     append(places, coarse.finer_places);
     RegistrationResult<Dim> fine = register_in(&coarse, round == composition.most_rounds);
-    report.control_points = fine.transform->basis().num_control_points();
+    report.control_points = fine.spline()->basis().num_control_points();
     report.cost = fine.cost;
     report.kept = fine.cost <= coarse.cost;
     result.rounds.push_back(report);

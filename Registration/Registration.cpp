@@ -87,7 +87,7 @@ Registration<Dim>& Registration<Dim>::initial(AffineMap<Dim> map) {
 
 template <int Dim>
 Registration<Dim>& Registration<Dim>::go_on_from(const RegistrationResult<Dim>& earlier) {
-  parts_->start = earlier.transform;
+  parts_->start = earlier.spline();
   parts_->initial = earlier.initial;
   for (auto& energy : parts_->energies) {
     const auto used = earlier.weights.find(energy.name);

@@ -133,6 +133,10 @@ struct RegistrationResult {
   bool improved = true;
   double cost = 0;                            ///< weighted sum of all terms, at the finest level
   std::vector<FinerPlace<Dim>> finer_places;  ///< where asked for
+  /// The transform when it is a spline on a basis; null when another was asked for.
+  std::shared_ptr<const SplineTransform<Dim>> spline() const {
+    return std::dynamic_pointer_cast<const SplineTransform<Dim>>(transform);
+  }
   std::map<std::string, double> timings_s;    ///< "alignment", "binding", "start", "optimization"
   std::vector<std::string> warnings;
 };

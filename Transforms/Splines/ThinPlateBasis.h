@@ -73,7 +73,10 @@ class ThinPlateBasis final : public SplineBasis<Dim> {
   std::optional<Eigen::MatrixXd> bending_matrix() const override;
   std::vector<std::pair<int, int>> couplings() const override;
   /// Tables of all functions at all samples (SparseRowGrid) where these are few; else a cubic B-spline that
-  /// interpolates them on a lattice (LatticeGrid).
+  /// interpolates them on a lattice of a sixth (2D) or third (3D) of the centres' mean distance (LatticeGrid).
+  /// The lattice's error where centres move independently of each other: 0.2 % (2D), 1 % (3D) of their
+  /// movement, root mean square, 2 % and 25 % beside a centre; a hundredth and a tenth of that where they
+  /// move smoothly.
   std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const override;
 
  private:

@@ -74,7 +74,7 @@ template <int Dim>
 RegisterImages<Dim> make_images(const RegisterOptions& options, const RegisterInput<Dim>& input,
                                 const Transform<Dim>& transform) {
   const Raster<Dim>& raster = input.fixed.image.raster();
-  RegisterImages<Dim> images{transform_images(transform, raster), {}, {}};
+  RegisterImages<Dim> images{transform_images(transform, raster), {}, {}, {}};
   const auto kind =
       options.interpolator == "linear" ? InterpolationKind::kLinear : InterpolationKind::kCubic;
   const auto warp = [&](const Image<float, Dim>& moving) {

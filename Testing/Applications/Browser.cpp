@@ -97,7 +97,7 @@ std::string Browser::program() {
   for (const char* name : {"chromium", "chromium-headless-shell", "google-chrome"}) {
     std::istringstream folders(path != nullptr ? path : "/usr/bin");
     for (std::string folder; std::getline(folders, folder, ':');) {
-      const std::string file = folder + "/" + name;
+      std::string file = folder + "/" + name;
       if (access(file.c_str(), X_OK) == 0) return file;
     }
   }
@@ -235,7 +235,7 @@ Json Browser::read_message() {
     if (count <= 0) throw std::runtime_error("the browser has gone");
     unread_.append(buffer.data(), static_cast<std::size_t>(count));
   }
-  const Json message = Json::parse(unread_.substr(0, end));
+  Json message = Json::parse(unread_.substr(0, end));
   unread_.erase(0, end + 1);
   return message;
 }

@@ -11,6 +11,7 @@
 namespace crease {
 namespace {
 
+constexpr int kFewRows = 64;  // so few rows are all looked at to tell how long a step is
 constexpr int kStepRows = 4;  // one row in so many tells how long a step is
 
 /// Row buffers of one thread, reused from row to row.
@@ -154,13 +155,20 @@ double ImageTerm<Dim>::largest_step(const Eigen::Ref<const ControlPoints<Dim>>& 
   const RowTiles<Dim> tiles(raster);
   const auto coefficients = grid_->prepare(step);
   std::vector<double> largest(static_cast<std::size_t>(tiles.count()), 0.0);
+  // A domain of few rows needs them all.
+  std::int64_t rows_inside = 0;
+  for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
+    const auto [begin, end] = grid_->row_range(r);
+    rows_inside += begin < end ? 1 : 0;
+  }
+  const int stride = rows_inside < kFewRows ? 1 : kStepRows;
   parallel_for(tiles.count(), [&](std::int64_t tile) {
     RowBuffers<Dim>& rows = buffers<Dim>();
     rows.resize(padded_row_size(raster));
     float squared = 0;
     tiles.for_each_row(tile, [&](std::int64_t r) {
       const auto [begin, end] = grid_->row_range(r);
-      if (r % kStepRows != 0 || begin >= end) return;
+      if (r % stride != 0 || begin >= end) return;
       grid_->map_row(*coefficients, r, pointers<Dim>(rows.displacement));
       for (int i = begin; i < end; ++i) {
         float sum = 0;

@@ -28,7 +28,8 @@ class ImageTerm {
   /// The same with the samples' curvature as it comes, in small blocks and not scaled.
   double evaluate_blocks(const Eigen::Ref<const ControlPoints<Dim>>& phi, double scale,
                          ControlPoints<Dim>* gradient, CurvatureBlocks<Dim>* curvature);
-  /// The largest |sum_i step_i B_i(x)| over the samples of every fourth row, in units of the smallest sample
+  /// The largest |sum_i step_i B_i(x)| over the samples of every fourth row (of every row where
+  /// the domain has few), in units of the smallest sample
   /// spacing.
   double largest_step(const Eigen::Ref<const ControlPoints<Dim>>& step) const;
 

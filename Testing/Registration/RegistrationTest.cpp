@@ -6,6 +6,8 @@
 #include "Core/Error.h"
 #include "Registration/Phantoms/Phantom.h"
 #include "Testing/Registration/TestScenes.h"
+#include "Transforms/Splines/NurbsBasis.h"
+#include "Transforms/Splines/TSplineRefinement.h"
 #include "Transforms/Splines/TensorBSplineBasis.h"
 
 namespace crease {
@@ -48,6 +50,31 @@ TEST(Registration, WeightedTermsSumUpToTheEnergyOfEveryIteration) {
     }
   }
   EXPECT_GT(iterations, 4);
+}
+
+// NURBS of the same spans, rational or not, and a T-spline that is finer in a disc.
+TEST(Registration, RecoversTheBlobsWithOtherSplines) {
+  const Phantom phantom = make_phantom("blobs", {.size = 256});
+  const auto& raster = phantom.fixed.raster();
+  const NurbsNet<2> net = covering_nurbs(raster, 16);
+  NurbsNet<2> rational = net;
+  Eigen::VectorXd coefficients(9);
+  coefficients << 1, 1.2, 1, 1.1, 1.4, 1.1, 1, 1.2, 1;
+  rational.weights = elevated_weights(net, coefficients);
+  const auto finer = [&](const Point<2>& x) {
+    return (x - raster.point({90, 140})).norm() < 50 ? 8.0 : 16.0;
+  };
+  const std::vector<std::shared_ptr<const SplineBasis<2>>> bases = {
+      std::make_shared<NurbsBasis<2>>(net), std::make_shared<NurbsBasis<2>>(rational),
+      covering_tspline(raster, 16, finer)};
+  for (const auto& basis : bases) {
+    Registration<2> registration(phantom.fixed, phantom.moving);
+    registration.basis(basis).energy("bending", 0.01, bending<2>());
+    const auto result = registration.run();
+    const auto found = [&](const Point<2>& x) { return result.transform->map(x); };
+    EXPECT_LT(testing::rms_difference(raster, found, phantom.truth, 10), 0.06);
+    EXPECT_LT(result.metric_after, 0.02 * result.metric_before);
+  }
 }
 
 TEST(Registration, RefusesWhatItCannotRun) {

@@ -4,6 +4,7 @@
 
 #include "Transforms/Splines/NurbsBasis.h"
 #include "Transforms/Splines/TSplineRefinement.h"
+#include "Transforms/Splines/ThinPlateBasis.h"
 
 namespace crease {
 namespace {
@@ -54,11 +55,15 @@ std::shared_ptr<const SplineBasis<2>> tspline_basis(const Raster<2>& raster, dou
 template <int Dim>
 std::shared_ptr<const SplineBasis<Dim>> covering_basis(const RegisterOptions& options,
                                                        const Raster<Dim>& raster,
+                                                       const Landmarks<Dim>& landmarks,
                                                        const std::vector<FinerPlace<Dim>>& finer) {
   const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
   const int degree = options.spline_degree();
   if (options.transform == "nurbs") {
     return std::make_shared<const NurbsBasis<Dim>>(covering_nurbs(raster, length, degree));
+  }
+  if (options.transform == "thin-plate") {
+    return covering_thin_plate<Dim>(raster, length, landmarks.fixed);
   }
   if constexpr (Dim == 2) {
     if (options.transform == "tspline") return tspline_basis(raster, length, degree, finer);
@@ -76,7 +81,7 @@ RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
     if (options.has_triangles()) return basis_on_triangles(options, input, report, finer);
   }
   RegisterBasis<Dim> result;
-  result.basis = covering_basis(options, input.fixed.image.raster(), finer);
+  result.basis = covering_basis(options, input.fixed.image.raster(), input.landmarks, finer);
   if (input.labels) result.bodies = label_weights(*input.labels);
   return result;
 }

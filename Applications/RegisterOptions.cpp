@@ -31,19 +31,25 @@ void check_transform(const RegisterOptions& o) {
     refuse_if(o.smoothness.has_value(), "smoothness", o, needs);
     refuse_if(o.no_creases, "no-creases", o, needs);
   }
-  refuse_if(o.degree.has_value() && o.transform == "powell-sabin", "degree", o,
-            "splines of other degrees than 2, such as triangular-bspline");
+  if (o.transform == "powell-sabin" || o.transform == "thin-plate") {
+    refuse_if(o.degree.has_value(), "degree", o, "splines of any degree, such as bspline");
+  }
   if (o.transform == "tspline" && o.spline_degree() % 2 == 0) {
     throw UsageError(message("--degree ", o.spline_degree(),
                              ": T-splines have degree 1, 3 or 5; take one of these."));
   }
   refuse_if(o.adapt > 0 && !o.can_adapt(), "adapt", o,
             "patches that can be divided: --transform triangular-bspline, powell-sabin or tspline");
-  if (!o.is_spline()) {
+  if (!o.has_basis()) {
     const char* needs = "a spline, such as --transform triangular-bspline or bspline";
-    refuse_if(o.mesh_size.has_value(), "mesh-size", o, needs);
+    refuse_if(o.degree.has_value(), "degree", o, needs);
     refuse_if(o.rigid_labels.has_value(), "rigid-labels", o, needs);
     refuse_if(o.beta.has_value(), "beta", o, needs);
+    refuse_if(o.num_channels() > 1 && !o.is_linear(), "fixed, given twice,", o, needs);
+  }
+  if (o.is_linear()) {
+    const char* needs = "a transform that bends, such as triangular-bspline or bspline";
+    refuse_if(o.mesh_size.has_value(), "mesh-size", o, needs);
     refuse_if(o.gamma.has_value(), "gamma", o, needs);
     refuse_if(o.init_transform.has_value(), "init-transform", o, needs);
     refuse_if(o.landmarks_mode != "exact", "landmarks-mode", o, needs);
@@ -51,7 +57,7 @@ void check_transform(const RegisterOptions& o) {
     refuse_if(o.sample_fraction != 1, "sample-fraction", o, needs);
     refuse_if(o.null_space != "elimination", "null-space", o, needs);
   }
-  if (o.is_spline() && o.optimizer == "nelder-mead") {
+  if (!o.is_linear() && o.optimizer == "nelder-mead") {
     throw UsageError(
         message("--optimizer nelder-mead is for few unknowns: --transform rigid or "
                 "affine. For --transform ",
@@ -98,7 +104,7 @@ void check_landmarks(const RegisterOptions& o) {
 }
 
 void check_weights(const RegisterOptions& o) {
-  if (!o.is_spline()) {
+  if (o.is_linear()) {
     if (!o.has_metric() && o.landmarks.empty()) {
       throw UsageError("--metric none leaves nothing to register by; give --landmarks FILE.");
     }
@@ -203,8 +209,8 @@ std::vector<Option> domain_options(RegisterOptions& o) {
       {.name = "transform",
        .target = &o.transform,
        .help = "What moves the image; on triangles and T-splines in 2D only, the others in 3D, too",
-       .choices = {"triangular-bspline", "bspline", "nurbs", "powell-sabin", "tspline", "affine",
-                   "rigid"}},
+       .choices = {"triangular-bspline", "bspline", "nurbs", "powell-sabin", "tspline",
+                   "thin-plate", "cauchy-navier", "affine", "similarity", "rigid"}},
       {.name = "degree",
        .target = &o.degree,
        .placeholder = "N",
@@ -322,8 +328,8 @@ std::vector<Option> solver_options(RegisterOptions& o) {
        .is_path = true},
       {.name = "init-transform",
        .target = &o.init_transform,
-       .help = "Search a rigid or affine map before the spline (none)",
-       .choices = {"rigid", "affine", "none"}},
+       .help = "Search a rigid, similar or affine map first (none)",
+       .choices = {"rigid", "similarity", "affine", "none"}},
       {.name = "levels",
        .target = &o.levels,
        .placeholder = "L",

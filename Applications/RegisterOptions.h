@@ -43,10 +43,11 @@ struct RegisterOptions {
 
   bool is_triangular() const { return transform == "triangular-bspline"; }
   bool has_triangles() const { return is_triangular() || transform == "powell-sabin"; }
-  bool is_spline() const {
-    return has_triangles() || transform == "bspline" || transform == "nurbs" ||
-           transform == "tspline";
+  bool is_linear() const {
+    return transform == "rigid" || transform == "similarity" || transform == "affine";
   }
+  /// Whether its motions are splines on a basis.
+  bool has_basis() const { return !is_linear() && transform != "cauchy-navier"; }
   /// Whether there is none but in the plane.
   bool is_plane_only() const { return has_triangles() || transform == "tspline"; }
   /// Whether its patches can be divided where the images ask for it.

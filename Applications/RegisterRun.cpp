@@ -9,6 +9,7 @@
 #include "Transforms/AffineTransform.h"
 #include "Transforms/LandmarkFits.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 
 namespace crease {
 namespace {
@@ -20,6 +21,7 @@ const Image* pointer(const std::optional<Image>& image) {
 
 AlignmentSearch search_of(const std::string& name) {
   if (name == "rigid") return AlignmentSearch::kRigid;
+  if (name == "similarity") return AlignmentSearch::kSimilarity;
   return name == "affine" ? AlignmentSearch::kAffine : AlignmentSearch::kNone;
 }
 
@@ -35,7 +37,7 @@ template <int Dim>
 AlignmentOptions alignment_options(const RegisterOptions& options, int num_landmarks) {
   AlignmentOptions alignment;
   alignment.search =
-      search_of(options.is_spline() ? options.init_transform.value_or("none") : options.transform);
+      search_of(options.is_linear() ? options.transform : options.init_transform.value_or("none"));
   const int needed = alignment.search == AlignmentSearch::kAffine ? Dim + 1 : Dim;
   const std::string start =
       options.init.value_or(num_landmarks >= needed ? "landmarks" : "moments");
@@ -81,6 +83,9 @@ Alignment<Dim> find_start(const RegisterOptions& options, const RegisterInput<Di
   if (input.start && !options.has_metric()) return {.map = *input.start, .report = {}};
   const AlignmentOptions wanted = alignment_options<Dim>(options, input.landmarks.size());
   if (!options.has_metric() && wanted.start == AlignmentStart::kLandmarks) {
+    if (options.transform == "similarity") {
+      return {fit_similarity<Dim>(input.landmarks.fixed, input.landmarks.moving).affine_map(), {}};
+    }
     if (options.transform == "affine") {
       return {fit_affine<Dim>(input.landmarks.fixed, input.landmarks.moving).affine_map(), {}};
     }
@@ -101,6 +106,8 @@ RegisterOutcome<Dim> affine_outcome(const RegisterOptions& options, const Regist
   const Point<Dim> centre = geometric_centre(input.fixed.image.raster());
   if (options.transform == "rigid") {
     outcome.transform = std::make_shared<RigidTransform<Dim>>(alignment.map, centre);
+  } else if (options.transform == "similarity") {
+    outcome.transform = std::make_shared<SimilarityTransform<Dim>>(alignment.map, centre);
   } else {
     outcome.transform = std::make_shared<AffineTransform<Dim>>(alignment.map, centre);
   }
@@ -144,26 +151,22 @@ LandmarkOptions landmark_options(const RegisterOptions& options) {
 }
 
 template <int Dim>
-Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                          const AffineMap<Dim>& start, const RegisterBasis<Dim>& basis,
-                          std::map<std::string, double>& weights) {
-  Registration<Dim> registration = options.has_metric()
-                                       ? Registration<Dim>(input.fixed.image, input.moving.image)
-                                       : Registration<Dim>();
-  registration.initial(start).basis(basis.basis);
-  if (options.has_metric()) {
-    if (input.fixed_mask) registration.fixed_mask(*input.fixed_mask);
-    if (input.moving_mask) registration.moving_mask(*input.moving_mask);
-    const auto channels = channels_of(options, input);
-    registration.metric(channels[0].metric, channels[0].weight).image_weight(options.alpha);
-    for (std::size_t c = 1; c < channels.size(); ++c) {
-      const ChannelView<Dim>& further = channels[c];
-      registration.channel({*further.fixed, *further.moving, further.metric, further.weight});
-    }
-    weights["image"] = options.alpha;
+void add_images(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                Registration<Dim>& registration) {
+  if (input.fixed_mask) registration.fixed_mask(*input.fixed_mask);
+  if (input.moving_mask) registration.moving_mask(*input.moving_mask);
+  const auto channels = channels_of(options, input);
+  registration.metric(channels[0].metric, channels[0].weight).image_weight(options.alpha);
+  for (std::size_t c = 1; c < channels.size(); ++c) {
+    const ChannelView<Dim>& further = channels[c];
+    registration.channel({*further.fixed, *further.moving, further.metric, further.weight});
   }
-  registration.interpolation(options.interpolator == "linear" ? InterpolationKind::kLinear
-                                                              : InterpolationKind::kCubic);
+}
+
+template <int Dim>
+void add_spline(const RegisterOptions& options, const RegisterBasis<Dim>& basis,
+                Registration<Dim>& registration, std::map<std::string, double>& weights) {
+  registration.basis(basis.basis);
   const bool rigid = basis.bodies && options.rigidity_weight() > 0;
   weights["bending"] = options.gamma.value_or(default_bending_weight(*basis.basis));
   if (weights["bending"] > 0) {
@@ -173,6 +176,37 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   if (rigid) {
     weights["rigidity"] = options.rigidity_weight();
     registration.energy("rigidity", weights["rigidity"], rigidity<Dim>(basis.bodies));
+  }
+}
+
+template <int Dim>
+void add_elastic_body(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                      Registration<Dim>& registration, std::map<std::string, double>& weights) {
+  const Raster<Dim>& raster = input.fixed.image.raster();
+  const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
+  weights["roughness"] = options.gamma.value_or(default_roughness_weight<Dim>(length));
+  registration.transform(cauchy_navier<Dim>(raster, length, input.landmarks.fixed),
+                         {.detail_mm = length, .roughness = weights["roughness"]});
+}
+
+template <int Dim>
+Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                          const AffineMap<Dim>& start, const RegisterBasis<Dim>& basis,
+                          std::map<std::string, double>& weights) {
+  Registration<Dim> registration = options.has_metric()
+                                       ? Registration<Dim>(input.fixed.image, input.moving.image)
+                                       : Registration<Dim>();
+  registration.initial(start);
+  if (options.has_metric()) {
+    add_images(options, input, registration);
+    weights["image"] = options.alpha;
+  }
+  registration.interpolation(options.interpolator == "linear" ? InterpolationKind::kLinear
+                                                              : InterpolationKind::kCubic);
+  if (options.has_basis()) {
+    add_spline(options, basis, registration, weights);
+  } else {
+    add_elastic_body(options, input, registration, weights);
   }
   if (!input.landmarks.empty()) {
     registration.landmarks(input.landmarks, landmark_options(options));
@@ -213,10 +247,10 @@ AdaptiveResult<2> run_adaptively(const RegisterOptions& options, const RegisterI
 }
 
 template <int Dim>
-RegistrationResult<Dim> run_spline(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                                   const AffineMap<Dim>& start, RegisterBasis<Dim>& basis,
-                                   RegisterOutcome<Dim>& outcome, RunReport& report,
-                                   ProgressReporter& progress) {
+RegistrationResult<Dim> run_bending(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                    const AffineMap<Dim>& start, RegisterBasis<Dim>& basis,
+                                    RegisterOutcome<Dim>& outcome, RunReport& report,
+                                    ProgressReporter& progress) {
   if constexpr (Dim == 2) {
     if (options.adapt > 0) {
       AdaptiveResult<2> adapted =
@@ -229,17 +263,19 @@ RegistrationResult<Dim> run_spline(const RegisterOptions& options, const Registe
 }
 
 template <int Dim>
-RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                                    const Alignment<Dim>& alignment, RunReport& report,
-                                    ProgressReporter& progress) {
+RegisterOutcome<Dim> bending_outcome(const RegisterOptions& options,
+                                     const RegisterInput<Dim>& input,
+                                     const Alignment<Dim>& alignment, RunReport& report,
+                                     ProgressReporter& progress) {
   progress.report({.stage = "domain", .fraction = 0.05});
-  RegisterBasis<Dim> basis = make_register_basis(options, input, report);
+  RegisterBasis<Dim> basis;
+  if (options.has_basis()) basis = make_register_basis(options, input, report);
   report.end_stage("domain");
   RegisterOutcome<Dim> outcome;
   outcome.alignment = alignment;
   try {
     RegistrationResult<Dim> result =
-        run_spline(options, input, alignment.map, basis, outcome, report, progress);
+        run_bending(options, input, alignment.map, basis, outcome, report, progress);
     for (const auto& [stage, seconds] : result.timings_s) report.add_part(stage, seconds);
     report.add_warnings(result.warnings);
     outcome.transform = result.transform;
@@ -256,17 +292,23 @@ RegisterOutcome<Dim> spline_outcome(const RegisterOptions& options, const Regist
     outcome.improved = result.improved;
   } catch (const SolverError& error) {
     report.add_warning(message("no solution: ", error.what(), " The result is the initial map."));
-    report.add_warnings(make_landmark_constraints(input.landmarks, *basis.basis, alignment.map,
-                                                  landmark_options(options),
-                                                  NullSpaceKind::kElimination)
-                            .notes);  // what may have led there
-    outcome.transform = std::make_shared<SplineTransform<Dim>>(basis.basis, alignment.map);
+    if (basis.basis != nullptr) {
+      report.add_warnings(make_landmark_constraints(input.landmarks, *basis.basis, alignment.map,
+                                                    landmark_options(options),
+                                                    NullSpaceKind::kElimination)
+                              .notes);  // what may have led there
+      outcome.transform = std::make_shared<SplineTransform<Dim>>(basis.basis, alignment.map);
+    } else {
+      outcome.transform = std::make_shared<AffineTransform<Dim>>(alignment.map);
+    }
     outcome.stopped_because = "the solver failed";
     outcome.converged = outcome.improved = false;
   }
   report.end_stage("registration");
-  outcome.control_points = basis.basis->num_control_points();
-  outcome.domain_measure = basis.basis->measure();
+  if (basis.basis != nullptr) {
+    outcome.control_points = basis.basis->num_control_points();
+    outcome.domain_measure = basis.basis->measure();
+  }
   outcome.domain = std::move(basis.domain);
   return outcome;
 }
@@ -279,8 +321,8 @@ RegisterOutcome<Dim> run_registration(const RegisterOptions& options,
                                       ProgressReporter& progress) {
   const Alignment<Dim> start = find_start(options, input, report, progress);
   report.end_stage("alignment");
-  if (!options.is_spline()) return affine_outcome(options, input, start);
-  return spline_outcome(options, input, start, report, progress);
+  if (options.is_linear()) return affine_outcome(options, input, start);
+  return bending_outcome(options, input, start, report, progress);
 }
 
 template RegisterOutcome<2> run_registration<2>(const RegisterOptions&, const RegisterInput<2>&,

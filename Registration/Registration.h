@@ -137,7 +137,7 @@ struct RegistrationResult {
   std::shared_ptr<const SplineTransform<Dim>> spline() const {
     return std::dynamic_pointer_cast<const SplineTransform<Dim>>(transform);
   }
-  std::map<std::string, double> timings_s;    ///< "alignment", "binding", "start", "optimization"
+  std::map<std::string, double> timings_s;  ///< "alignment", "binding", "start", "optimization"
   std::vector<std::string> warnings;
 };
 

@@ -138,6 +138,7 @@ void RegistrationFrame<Dim>::book(const Round& round, LevelReport& level) {
   for (const auto& record : round.history) level.energy_history.push_back(record.value);
   level.term_history.insert(level.term_history.end(), round.weighted_terms.begin(),
                             round.weighted_terms.end());
+  level.term_history.resize(level.energy_history.size());  // where none are known
   result_.converged =
       round.reason != StopReason::kTimeLimit && round.reason != StopReason::kCancelled;
 }

@@ -3,6 +3,7 @@
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 
 namespace crease {
 
@@ -13,6 +14,9 @@ std::optional<AffineMap<Dim>> affine_equivalent(const Transform<Dim>& transform)
   }
   if (const auto* rigid = dynamic_cast<const RigidTransform<Dim>*>(&transform)) {
     return rigid->affine_map();
+  }
+  if (const auto* similarity = dynamic_cast<const SimilarityTransform<Dim>*>(&transform)) {
+    return similarity->affine_map();
   }
   const auto* chain = dynamic_cast<const CompositeTransform<Dim>*>(&transform);
   if (chain == nullptr) return std::nullopt;

@@ -38,6 +38,7 @@ class DisplacementFieldTransform final : public Transform<Dim> {
   /// Whether x lies within the border above.
   bool in_domain(const Point<Dim>& x) const override;
   Eigen::Index num_parameters() const override { return displacements_.size(); }
+  bool linear_in_parameters() const override { return true; }
   Eigen::VectorXd parameters() const override;
   void set_parameters(const Eigen::Ref<const Eigen::VectorXd>& parameters) override;
   void add_adjoint(std::span<const Point<Dim>> x, std::span<const Vector<Dim>> forces,

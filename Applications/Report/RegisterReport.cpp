@@ -160,10 +160,10 @@ std::vector<ReportHead::Figure> key_figures(const RegisterStory<Dim>& story) {
   int iterations = 0;
   for (const LevelReport& level : outcome.levels) iterations += level.iterations;
   const std::size_t levels = outcome.levels.size();
-  figures.push_back({options.is_spline() ? "iterations" : "evaluations", std::to_string(iterations),
-                     options.is_spline()
-                         ? fmt::format("on {} level{}", levels, levels == 1 ? "" : "s")
-                         : "of the metric"});
+  figures.push_back(
+      {!options.is_linear() ? "iterations" : "evaluations", std::to_string(iterations),
+       !options.is_linear() ? fmt::format("on {} level{}", levels, levels == 1 ? "" : "s")
+                            : "of the metric"});
   return figures;
 }
 
@@ -276,7 +276,7 @@ void add_optimisation(const RegisterStory<Dim>& story, HtmlReport& report) {
   const auto& outcome = story.outcome;
   report.begin_section("optimisation", "Optimisation");
   add_channels(outcome.channels, report);
-  if (!story.options.is_spline()) {
+  if (story.options.is_linear()) {
     report.add_text("This transform is found by a search, not by levels of iterations: " +
                     outcome.stopped_because + ".");
     return;

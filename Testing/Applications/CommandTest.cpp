@@ -37,8 +37,8 @@ TEST(Command, RefusesWhatBelongsToLaterVersions) {
   for (const auto& extra : std::vector<std::vector<std::string>>{{"--orientations", "exact"},
                                                                  {"--slide-labels", "l.mha"},
                                                                  {"--energy", "elastic"},
-                                                                 {"--transform", "tspline"},
-                                                                 {"--transform", "nurbs"}}) {
+                                                                 {"--transform", "demons"},
+                                                                 {"--transform", "syn"}}) {
     auto arguments = base;
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     const auto run = run_crease(arguments);

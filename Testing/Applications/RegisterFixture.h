@@ -44,7 +44,7 @@ class RegisterFixture : public ::testing::Test {
       return std::find(extra.begin(), extra.end(), name) != extra.end();
     };
     if (has("--init")) arguments.erase(arguments.end() - 3, arguments.end() - 1);
-    const bool is_affine = has("affine") || has("rigid");
+    const bool is_affine = has("affine") || has("similarity") || has("rigid");
     if (!has("--mesh-size") && !has("--triangles") && !is_affine) {
       arguments.insert(arguments.end(), {"--mesh-size", "16"});
     }

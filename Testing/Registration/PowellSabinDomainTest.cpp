@@ -63,7 +63,7 @@ TEST(PowellSabinDomain, RegistersBodies) {
   const auto creased = run(domain, 1), soft = run(domain, 0);
   const auto smooth = run(domain_of(phantom, TriangleSpline::kPowellSabin, false), 1);
   // Of lengths in bodies, and of the map: root mean square over every other pixel.
-  const auto figures = [&](const SplineTransform<2>& transform) {
+  const auto figures = [&](const Transform<2>& transform) {
     double stretch = 0, in_bodies = 0, error = 0, all = 0;
     for (int j = 0; j < 96; j += 2) {
       for (int i = 0; i < 96; i += 2) {

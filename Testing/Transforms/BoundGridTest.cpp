@@ -346,7 +346,7 @@ TYPED_TEST(BoundGridSuite, SameBytesOnAnyNumberOfThreads) {
 // One curvature everywhere: the larger blocks' middles stand for all samples.
 template <int Dim>
 void expect_gathered_curvature() {
-  const auto basis = ThinPlates<Dim, true>::basis();
+  const auto basis = ThinPlates<Dim, true>::make();
   const auto raster = raster_over<Dim>(testing::small_lattice<Dim>());
   const auto grid = ThinPlates<Dim, true>::bind(*basis, raster);
   CurvatureBlocks<Dim> blocks(raster.size);

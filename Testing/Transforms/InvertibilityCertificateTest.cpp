@@ -60,6 +60,14 @@ Point<Dim> point_in(const BoxPiece<Dim>& piece, Numbers& numbers) {
   return piece.origin + piece.edges * (0.5 + 0.45 * numbers.columns<Dim>(1).array()).matrix();
 }
 
+/// Bases that know their determinants as polynomials.
+bool is_certifiable(const std::string& basis) {
+  for (const char* other : {"NURBS", "T-spline", "thin plates"}) {
+    if (basis.find(other) != std::string::npos) return false;
+  }
+  return true;
+}
+
 template <int Dim>
 void expect_bounds_hold() {
   const Box<Dim> box = sample_box<Dim>();
@@ -70,7 +78,7 @@ void expect_bounds_hold() {
     SplineTransform<Dim> transform(sample.basis, affine);
     transform.set_control_points(Numbers(3).columns<Dim>(sample.basis->num_control_points(), 0.5));
     const auto pieces = sample.basis->determinant_pieces(transform.control_points(), affine.linear);
-    if (!sample.integrates) {
+    if (!sample.integrates || !is_certifiable(sample.name)) {
       EXPECT_EQ(pieces, nullptr) << sample.name;
       continue;
     }
@@ -113,8 +121,7 @@ TEST(InvertibilityCertificate, BoundsOfPatchesAndPiecesHoldInSpace) { expect_bou
 TEST(InvertibilityCertificate, IdentityHasDeterminantOneEverywhere) {
   for (const auto& sample : testing::sample_bases<2>(sample_box<2>())) {
     const auto certificate = certify_invertibility(SplineTransform<2>(sample.basis));
-    if (sample.name.find("NURBS") != std::string::npos ||
-        sample.name.find("T-spline") != std::string::npos) {
+    if (!is_certifiable(sample.name)) {
       EXPECT_EQ(certificate.verdict, Invertibility::kNotCertifiable) << sample.name;
       continue;
     }

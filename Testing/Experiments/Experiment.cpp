@@ -97,7 +97,7 @@ int give_up(const std::exception& error) {
 }
 
 std::filesystem::path output_folder(int argc, char** argv, const std::string& fallback) {
-  const std::filesystem::path folder = argc > 1 ? argv[1] : fallback;
+  std::filesystem::path folder = argc > 1 ? argv[1] : fallback;
   std::filesystem::create_directories(folder);
   return folder;
 }

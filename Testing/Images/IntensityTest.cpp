@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
@@ -73,7 +74,7 @@ void expect_moments_of_a_gaussian(double background) {
   size.fill(Dim == 2 ? 90 : 45);
   auto raster = turned_raster<Dim>(size);
   raster.spacing.setConstant(Dim == 2 ? 0.8 : 1.6);
-  Vector<Dim> middle = Vector<Dim>::Constant(size[0] / 2 + 1.25);
+  Vector<Dim> middle = Vector<Dim>::Constant(std::floor(0.5 * size[0]) + 1.25);
   const Point<Dim> centre = raster.point(middle);
   const double sigma = 5;
   const auto image = image_of(raster, [&](const Vector<Dim>& index) {

@@ -27,7 +27,7 @@ Vector<2> rigid(const Point<2>& x) {
 }
 
 /// Rigid where the distance to a line is negative, fading away from it on the other side.
-Truth fading(std::function<double(const Point<2>&)> distance) {
+Truth fading(const std::function<double(const Point<2>&)>& distance) {
   return [=](const Point<2>& x) -> Vector<2> {
     return std::exp(-1.2 * std::max(0.0, distance(x))) * rigid(x);
   };
@@ -191,7 +191,7 @@ TEST(CreaseFit, HasNoHingesOnAnyShape) {
     const double r = x.norm(), angle = std::atan2(x[1], x[0]) - testing::kSpiral * r;
     return (1 + 0.3 * r * std::abs(std::sin(1.5 * angle)) * std::exp(-r)) * rigid(x);
   };
-  const auto near_lines = [](std::vector<FeatureLine> lines) {
+  const auto near_lines = [](const std::vector<FeatureLine>& lines) {
     return testing::domain_with(lines, 0.5, 0.35);
   };
   const struct {

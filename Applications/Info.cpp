@@ -9,7 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "Applications/CertificateReport.h"
+#include "Applications/FileInfo.h"
 #include "Applications/InputFiles.h"
 #include "Applications/RunOptions.h"
 #include "Applications/RunReport.h"
@@ -18,34 +18,14 @@
 #include "Images/ImageFile.h"
 #include "Registration/Landmarks.h"
 #include "Registration/PointFile.h"
-#include "Transforms/AffineEquivalent.h"
-#include "Transforms/CompositeTransform.h"
-#include "Transforms/DisplacementFieldTransform.h"
 #include "Transforms/Domains/CsvTable.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 #include "Transforms/Domains/RegionOfInterest.h"
-#include "Transforms/SplineTransform.h"
-#include "Transforms/Splines/TensorBSplineBasis.h"
-#include "Transforms/Splines/TriangularBSplineBasis.h"
-#include "Transforms/TransformFile.h"
 
 namespace crease {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// What is known about a file, for people and for programs.
-struct FileInfo {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
-  Json figures;
-  std::string text;
-};
-
-std::string numbers_text(const double* values, int count, const char* separator) {
-  std::string text;
-  for (int a = 0; a < count; ++a)
-    text += fmt::format("{}{:.6g}", a > 0 ? separator : "", values[a]);
-  return text;
-}
 
 FileInfo image_info(const std::string& file) {
   const ImageInfo info = read_image_info(file);
@@ -85,110 +65,6 @@ FileInfo image_info(const std::string& file) {
   result.text += fmt::format("values {:.6g} to {:.6g}, {} not finite\n", info.minimum, info.maximum,
                              info.num_not_finite);
   for (const std::string& note : h.notes) result.text += note + "\n";
-  return result;
-}
-
-template <int Dim>
-void describe_basis(const SplineBasis<Dim>& basis, Json& json, std::string& text) {
-  json["degree"] = basis.degree();
-  json["smoothness"] = basis.smoothness();
-  json["control_points"] = basis.num_control_points();
-  json["mean_edge_length_mm"] = basis.mean_edge_length();
-  text += fmt::format(
-      "  degree {}, C{} away from creases, {} control points, mean edge {:.4g} mm\n",
-      basis.degree(), basis.smoothness(), basis.num_control_points(), basis.mean_edge_length());
-  if (const auto* tensor = dynamic_cast<const TensorBSplineBasis<Dim>*>(&basis)) {
-    const auto& spans = tensor->lattice().spans;
-    json["basis"] = "tensor";
-    json["spans"] = std::vector<int>(spans.begin(), spans.end());
-    text += fmt::format("  tensor-product B-spline, {} spans\n", fmt::join(spans, " x "));
-  }
-  if (const auto* triangular = dynamic_cast<const TriangularBSplineBasis<Dim>*>(&basis)) {
-    const auto& net = triangular->net();
-    json["basis"] = "triangular";
-    json["simplices"] = net.mesh.simplices.size();
-    json["vertices"] = net.mesh.vertices.size();
-    json["crease_edges"] = net.crease_edges.size();
-    const int bodies = net.mesh.regions.empty()
-                           ? 0
-                           : *std::max_element(net.mesh.regions.begin(), net.mesh.regions.end());
-    json["bodies"] = bodies;
-    text += fmt::format(
-        "  triangular B-spline, {} triangles, {} vertices, {} crease edges, {} rigid "
-        "bodies\n",
-        net.mesh.simplices.size(), net.mesh.vertices.size(), net.crease_edges.size(), bodies);
-  }
-}
-
-template <int Dim>
-void describe_field(const DisplacementFieldTransform<Dim>& field, Json& json, std::string& text) {
-  const Raster<Dim>& raster = field.raster();
-  const double largest = field.displacements().colwise().norm().maxCoeff();
-  json["size"] = raster.size;
-  json["spacing_mm"] = std::vector<double>(raster.spacing.begin(), raster.spacing.end());
-  json["largest_displacement_mm"] = largest;
-  text += fmt::format("  displacement field, {} samples, {} mm apart, up to {:.4g} mm\n",
-                      fmt::join(raster.size, " x "),
-                      numbers_text(raster.spacing.data(), Dim, " x "), largest);
-}
-
-/// Rows of the matrix, then the offset: y = M x + t.
-template <int Dim>
-void describe_affine(const AffineMap<Dim>& map, Json& json, std::string& text) {
-  json["matrix"] = Json::array();
-  for (int r = 0; r < Dim; ++r) {
-    const Vector<Dim> row = map.linear.row(r);
-    json["matrix"].push_back(std::vector<double>(row.begin(), row.end()));
-    text += fmt::format("  ({})  {:+.6g} mm\n", numbers_text(row.data(), Dim, "  "), map.offset[r]);
-  }
-  json["offset_mm"] = std::vector<double>(map.offset.begin(), map.offset.end());
-}
-
-template <int Dim>
-void describe_transform(const Transform<Dim>& transform, Json& json, std::string& text) {
-  json["parameters"] = transform.num_parameters();
-  if (const auto* spline = dynamic_cast<const SplineTransform<Dim>*>(&transform)) {
-    describe_basis(spline->basis(), json, text);
-  }
-  if (const auto* field = dynamic_cast<const DisplacementFieldTransform<Dim>*>(&transform)) {
-    describe_field(*field, json, text);
-  }
-  if (const auto* chain = dynamic_cast<const CompositeTransform<Dim>*>(&transform)) {
-    json["parts"] = Json::array();
-    for (std::size_t k = 0; k < chain->num_parts(); ++k) {
-      Json part = Json::object();
-      text += fmt::format("part {}\n", k + 1);
-      describe_transform(chain->part(k), part, text);
-      json["parts"].push_back(part);
-    }
-  } else if (const auto affine = affine_equivalent(transform)) {
-    describe_affine(*affine, json, text);
-  }
-}
-
-FileInfo transform_info(const std::string& file) {
-  const TransformFileInfo info = peek_transform(file);
-  FileInfo result;
-  result.figures = {{"kind", "transform"},
-                    {"type", info.type},
-                    {"format", info.format},
-                    {"in_dimension", info.in_dim},
-                    {"out_dimension", info.out_dim}};
-  result.text = fmt::format("{} transform, {}D to {}D ({})\n", info.type, info.in_dim, info.out_dim,
-                            info.format);
-  if (info.in_dim != info.out_dim) return result;
-  const auto describe = [&](const auto& transform) {
-    describe_transform(transform, result.figures, result.text);
-    const auto certificate = certify_invertibility(transform);
-    result.figures["jacobian"] = Json::object();
-    add_certificate(certificate, result.figures["jacobian"]);
-    result.text += "invertible: " + certificate_text(certificate) + "\n";
-  };
-  if (info.in_dim == 2) {
-    describe(*load_transform<2>(file));
-  } else {
-    describe(*load_transform<3>(file));
-  }
   return result;
 }
 

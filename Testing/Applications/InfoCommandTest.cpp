@@ -7,11 +7,16 @@
 #include "Images/ImageFile.h"
 #include "Testing/Applications/CommandRunner.h"
 #include "Testing/TemporaryFolder.h"
+#include "Transforms/CauchyNavierTransform.h"
 #include "Transforms/CompositeTransform.h"
 #include "Transforms/Domains/KnotPlacement.h"
 #include "Transforms/Domains/StructuredTriangulation.h"
 #include "Transforms/RigidTransform.h"
+#include "Transforms/SimilarityTransform.h"
 #include "Transforms/SplineTransform.h"
+#include "Transforms/Splines/NurbsBasis.h"
+#include "Transforms/Splines/PowellSabinBasis.h"
+#include "Transforms/Splines/ThinPlateBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/TransformFile.h"
 
@@ -28,6 +33,8 @@ class InfoCommand : public ::testing::Test {
     EXPECT_EQ(run.code, 0) << run.err;
     return nlohmann::json::parse(run.out);
   }
+  template <int Dim>
+  nlohmann::json info_of(std::shared_ptr<const SplineBasis<Dim>> basis) const;
   testing::TemporaryFolder folder;
 };
 
@@ -76,6 +83,55 @@ TEST_F(InfoCommand, DescribesTriangularSplines) {
   EXPECT_EQ(json["control_points"], 361);
   EXPECT_EQ(json["crease_edges"], 8);
   EXPECT_THAT(run_crease({"info", file}).out, HasSubstr("72 triangles"));
+}
+
+/// What `crease info --json` says of the identity in a basis.
+template <int Dim>
+nlohmann::json InfoCommand::info_of(std::shared_ptr<const SplineBasis<Dim>> basis) const {
+  const std::string file = (folder / "basis.json").string();
+  save_transform(SplineTransform<Dim>(std::move(basis)), file);
+  return info(file);
+}
+
+TEST_F(InfoCommand, DescribesOtherSplines) {
+  Box<2> box;
+  box.lower = {0, 0};
+  box.upper = {6, 6};
+  const auto mesh = structured_triangulation(box, 3, 3);
+  const auto sabin = info_of<2>(std::make_shared<PowellSabinBasis>(mesh));
+  EXPECT_EQ(sabin["basis"], "powell-sabin");
+  EXPECT_EQ(sabin["simplices"], 18);
+  EXPECT_EQ(sabin["vertices"], 16);
+  EXPECT_EQ(sabin["control_points"], 48);
+  Raster<3> raster;
+  raster.size = {7, 7, 7};
+  const auto plate = covering_thin_plate<3>(raster, 3);
+  const auto thin = info_of<3>(plate);
+  EXPECT_EQ(thin["basis"], "thin-plate");
+  EXPECT_EQ(thin["control_points"], plate->num_control_points());
+  NurbsNet<2> net;
+  net.degree = 2;
+  net.knots = {{{0, 0, 0, 2, 6, 6, 6}, {0, 0, 0, 6, 6, 6}}};
+  const auto nurbs = info_of<2>(std::make_shared<NurbsBasis<2>>(net));
+  EXPECT_EQ(nurbs["basis"], "nurbs");
+  EXPECT_EQ(nurbs["functions"], (std::vector<int>{4, 3}));
+  EXPECT_FALSE(nurbs["rational"].get<bool>());
+}
+
+TEST_F(InfoCommand, DescribesElasticBodiesAndSimilarities) {
+  ControlPoints<2> centres(2, 4);
+  centres << 0, 4, 4, 0, 0, 0, 4, 4;
+  const std::string file = (folder / "t.json").string();
+  save_transform(CauchyNavierTransform<2>(centres, 0.25), file);
+  const auto elastic = info(file);
+  EXPECT_EQ(elastic["centres"], 4);
+  EXPECT_EQ(elastic["poisson_ratio"], 0.25);
+  AffineMap<2> twice;
+  twice.linear *= 2;
+  save_transform(SimilarityTransform<2>(twice), file);
+  const auto similarity = info(file);
+  EXPECT_DOUBLE_EQ(similarity["scale"].get<double>(), 2);
+  EXPECT_EQ(similarity["matrix"].size(), 2u);
 }
 
 TEST_F(InfoCommand, DescribesChains) {

@@ -8,9 +8,8 @@
 #include <queue>
 
 #include "Core/Parallel.h"
-#include "Transforms/AffineTransform.h"
+#include "Transforms/AffineEquivalent.h"
 #include "Transforms/CompositeTransform.h"
-#include "Transforms/RigidTransform.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/DeterminantPieces.h"
 
@@ -260,10 +259,7 @@ InvertibilityCertificate<Dim> certificate_of(const Transform<Dim>& transform,
   if (const auto* chain = dynamic_cast<const CompositeTransform<Dim>*>(&transform)) {
     return of_chain(*chain, options);
   }
-  if (dynamic_cast<const AffineTransform<Dim>*>(&transform) != nullptr ||
-      dynamic_cast<const RigidTransform<Dim>*>(&transform) != nullptr) {
-    return of_linear<Dim>(transform.spatial_jacobian(Point<Dim>::Zero()));
-  }
+  if (const auto affine = affine_equivalent(transform)) return of_linear<Dim>(affine->linear);
   return {};
 }
 

@@ -62,11 +62,11 @@ Point<Dim> point_in(const BoxPiece<Dim>& piece, Numbers& numbers) {
 
 /// Bases that know their determinants as polynomials.
 bool is_certifiable(const std::string& basis) {
-  for (const char* other : {"NURBS", "T-spline", "thin plates"}) {
-    if (basis.find(other) != std::string::npos) return false;
-  }
-  return true;
+  return basis.find("thin plates") == std::string::npos;
 }
+
+/// Their pieces hold a multiple of det, not above it where positive.
+bool is_rational(const std::string& basis) { return basis.find("rational") != std::string::npos; }
 
 template <int Dim>
 void expect_bounds_hold() {
@@ -94,8 +94,15 @@ void expect_bounds_hold() {
               if (piece.size() < 1e-3 || !sample.basis->contains(x)) return;
               const double det = transform.spatial_jacobian(x).determinant();
               EXPECT_GE(det, rough) << sample.name << ", patch " << patch;
+              const bool rational = is_rational(sample.name);
+              if (rational && !(det > 0)) {
+                EXPECT_LE(piece.determinant.coefficients().minCoeff(), piece.error);
+                return;
+              }
               EXPECT_GE(det, piece.determinant.coefficients().minCoeff() - piece.error - 1e-9)
                   << sample.name << ", patch " << patch << ", at " << x.transpose();
+              EXPECT_LT(piece.error, 1e-6);
+              if (rational) return;
               EXPECT_LE(det, piece.determinant.coefficients().maxCoeff() + piece.error + 1e-9)
                   << sample.name << ", patch " << patch << ", at " << x.transpose();
               // Halves have tighter bounds, and hold, too.
@@ -105,7 +112,6 @@ void expect_bounds_hold() {
               EXPECT_GE(std::max(first.determinant.coefficients().maxCoeff(),
                                  second.determinant.coefficients().maxCoeff()),
                         det - 1e-9);
-              EXPECT_LT(piece.error, 1e-6);
             },
             any);
       }
@@ -126,7 +132,11 @@ TEST(InvertibilityCertificate, IdentityHasDeterminantOneEverywhere) {
       continue;
     }
     EXPECT_EQ(certificate.verdict, Invertibility::kCertified) << sample.name;
-    EXPECT_NEAR(certificate.lower_bound, 1, 1e-9) << sample.name;
+    if (is_rational(sample.name)) {
+      EXPECT_GT(certificate.lower_bound, 0) << sample.name;
+    } else {
+      EXPECT_NEAR(certificate.lower_bound, 1, 1e-9) << sample.name;
+    }
     EXPECT_LT(certificate.lower_bound, 1) << sample.name;  // rounding is taken off
     EXPECT_FALSE(certificate.failing.has_value());
   }
@@ -290,6 +300,10 @@ TEST(InvertibilityCertificate, CertifiesMapsThatDoNotFoldAndNoOthers) {
   run("C1", testing::triangles_over(box, {.degree = 3, .smoothness = 1}, 3), 10);
   run("creased C2", testing::creased_over(box), 9);
   run("creased C1", testing::creased_over(box, 3, 1), 9);
+  for (const auto& sample : testing::sample_bases<2>(box)) {
+    const bool other = sample.name.find("NURBS") == 0 || sample.name.find("T-spline") == 0;
+    if (other && sample.integrates) run(sample.name, sample.basis, 2);
+  }
   run("space", testing::tensor_over<3>(sample_box<3>(), 3, 3), 4);
   EXPECT_GE(count, 200);
   EXPECT_GE(certified, 0.95 * unfolded) << certified << " of " << unfolded;

@@ -51,8 +51,8 @@ using DeterminantPiece = std::variant<SimplexPiece<Dim>, BoxPiece<Dim>>;
 /// det grad T of a spline map, polynomial by polynomial. A patch is what quadrature() numbers as such: a
 /// triangle, a knot span. Members may be called from several threads.
 ///
-/// A basis whose functions are rational gives the numerator of det (its denominator, a positive function,
-/// divided by its largest value on the piece: then bounds of the piece are bounds of det where positive).
+/// Of rational functions it is the numerator of det over the largest value of its positive denominator: that
+/// has the sign of det, and where it is positive it is not above det.
 template <int Dim>
 class DeterminantPieces {
  public:

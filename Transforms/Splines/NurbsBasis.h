@@ -9,6 +9,9 @@
 
 namespace crease {
 
+template <int Dim>
+struct BezierBox;
+
 /// What a NURBS basis is made of.
 template <int Dim>
 struct NurbsNet {
@@ -83,6 +86,9 @@ class NurbsBasis final : public SplineBasis<Dim> {
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const override;
   std::vector<std::pair<int, int>> couplings() const override;
+  /// Null when the basis does not reproduce affine maps. The basis must outlive the result.
+  std::unique_ptr<DeterminantPieces<Dim>> determinant_pieces(
+      const ControlPoints<Dim>& phi, const Matrix<Dim>& linear) const override;
   /// As TensorBSplineBasis: separable rows for rasters along the axes (TensorBSplineGrid), tables for others.
   std::unique_ptr<BoundGrid<Dim>> bind(const Raster<Dim>& raster) const override;
 
@@ -91,6 +97,9 @@ class NurbsBasis final : public SplineBasis<Dim> {
   void divide_by_weight(BasisValues<Dim>& values) const;
   std::array<int, Dim> num_spans() const;
   void fill_control_points(const std::array<int, Dim>& span, std::vector<int>& numbers) const;
+  /// The map with these control points on a patch; nothing where its span is empty.
+  std::optional<BezierBox<Dim>> bezier_box(int patch,
+                                           const ControlPoints<Dim>& control_points) const;
 
   NurbsNet<Dim> net_;
   std::array<KnotVector, Dim> axes_;

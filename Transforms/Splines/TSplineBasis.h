@@ -68,6 +68,8 @@ class TSplineBasis final : public SplineBasis<2> {
       int polynomial_degree, int derivatives,
       const std::function<bool(int region, int patch)>& wanted = nullptr) const override;
   std::vector<std::pair<int, int>> couplings() const override;
+  std::unique_ptr<DeterminantPieces<2>> determinant_pieces(const ControlPoints<2>& phi,
+                                                           const Matrix<2>& linear) const override;
   std::unique_ptr<BoundGrid<2>> bind(const Raster<2>& raster) const override;
 
  private:

@@ -2,9 +2,7 @@
 // B-spline's benchmarks; `tables` binds by SparseRowGrid instead of the basis' own grid.
 #include <benchmark/benchmark.h>
 
-#include "Testing/Benchmarks/Counters.h"
-#include "Testing/Benchmarks/Samples.h"
-#include "Transforms/BoundGrid.h"
+#include "Testing/Benchmarks/GridLoops.h"
 #include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/SparseRowGrid.h"
 #include "Transforms/Splines/PowellSabinBasis.h"
@@ -67,52 +65,21 @@ BENCHMARK(BM_PowellSabinBind)->Apply(both);
 void BM_PowellSabinRasterMap(benchmark::State& state) {
   const Setting setting(state);
   const PowellSabinBasis basis(setting.mesh);
-  const auto grid = setting.bind(basis);
-  const auto points = random_control_points(basis);
-  std::vector<float> x(padded_row_size(setting.raster)), y = x;
-  for (auto _ : state) {
-    const auto coefficients = grid->prepare(points);
-    for (std::int64_t r = 0; r < setting.raster.num_rows(); ++r) {
-      grid->map_row(*coefficients, r, {x.data(), y.data()});
-      benchmark::DoNotOptimize(x.data());
-    }
-  }
-  setting.count_pixels(state);
+  time_raster_map(state, basis, *setting.bind(basis), setting.raster);
 }
 BENCHMARK(BM_PowellSabinRasterMap)->Apply(both);
 
 void BM_PowellSabinAdjoint(benchmark::State& state) {
   const Setting setting(state);
   const PowellSabinBasis basis(setting.mesh);
-  const auto grid = setting.bind(basis);
-  const std::vector<float> x(padded_row_size(setting.raster), 0.7f);
-  ControlPoints<2> gradient = ControlPoints<2>::Zero(2, basis.num_control_points());
-  for (auto _ : state) {
-    std::vector<std::unique_ptr<BoundGrid<2>::Accumulator>> sums;
-    for (std::int64_t r = 0; r < setting.raster.num_rows(); ++r) {
-      if (r % 16 == 0) sums.push_back(grid->new_accumulator());
-      grid->add_row(*sums.back(), r, {x.data(), x.data()});
-    }
-    grid->finish(sums, gradient);
-    benchmark::DoNotOptimize(gradient.data());
-  }
-  setting.count_pixels(state);
+  time_adjoint(state, basis, *setting.bind(basis), setting.raster);
 }
 BENCHMARK(BM_PowellSabinAdjoint)->Apply(both);
 
 void BM_PowellSabinCurvature(benchmark::State& state) {
   const Setting setting(state);
   const PowellSabinBasis basis(setting.mesh);
-  const auto grid = setting.bind(basis);
-  CurvatureBlocks<2> blocks(setting.raster.size);
-  for (auto& sums : blocks.sums) std::fill(sums.begin(), sums.end(), 0.5f);
-  BlockHessian<2> hessian(
-      std::make_shared<HessianPattern>(basis.num_control_points(), basis.couplings()));
-  for (auto _ : state) {
-    grid->add_curvature(blocks, 1.0, hessian);
-    benchmark::DoNotOptimize(&hessian);
-  }
-  setting.count_pixels(state);
+  time_curvature(state, basis, *setting.bind(basis), setting.raster);
 }
 BENCHMARK(BM_PowellSabinCurvature)->Apply(both);
 

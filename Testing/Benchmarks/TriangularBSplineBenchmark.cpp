@@ -3,9 +3,7 @@
 // on 2294 x 1914 pixels, the others on 512 x 512.
 #include <benchmark/benchmark.h>
 
-#include "Testing/Benchmarks/Counters.h"
-#include "Testing/Benchmarks/Samples.h"
-#include "Transforms/BoundGrid.h"
+#include "Testing/Benchmarks/GridLoops.h"
 #include "Transforms/SplineTransform.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/Splines/TriangularBSplineGrid.h"
@@ -141,52 +139,21 @@ void raster_cases(benchmark::internal::Benchmark* b) {
 void BM_TriangularRasterMap(benchmark::State& state) {
   const Setting setting(state);
   const TriangularBSplineBasis<2> basis(setting.net);
-  const auto grid = basis.bind(setting.raster);
-  const auto points = random_control_points(basis);
-  std::vector<float> x(padded_row_size(setting.raster)), y = x;
-  for (auto _ : state) {
-    const auto coefficients = grid->prepare(points);
-    for (std::int64_t r = 0; r < setting.raster.num_rows(); ++r) {
-      grid->map_row(*coefficients, r, {x.data(), y.data()});
-      benchmark::DoNotOptimize(x.data());
-    }
-  }
-  setting.count_pixels(state);
+  time_raster_map(state, basis, *basis.bind(setting.raster), setting.raster);
 }
 BENCHMARK(BM_TriangularRasterMap)->Apply(raster_cases);
 
 void BM_TriangularAdjoint(benchmark::State& state) {
   const Setting setting(state);
   const TriangularBSplineBasis<2> basis(setting.net);
-  const auto grid = basis.bind(setting.raster);
-  const std::vector<float> x(padded_row_size(setting.raster), 0.7f);
-  ControlPoints<2> gradient = ControlPoints<2>::Zero(2, basis.num_control_points());
-  for (auto _ : state) {
-    std::vector<std::unique_ptr<BoundGrid<2>::Accumulator>> sums;
-    for (std::int64_t r = 0; r < setting.raster.num_rows(); ++r) {
-      if (r % 16 == 0) sums.push_back(grid->new_accumulator());
-      grid->add_row(*sums.back(), r, {x.data(), x.data()});
-    }
-    grid->finish(sums, gradient);
-    benchmark::DoNotOptimize(gradient.data());
-  }
-  setting.count_pixels(state);
+  time_adjoint(state, basis, *basis.bind(setting.raster), setting.raster);
 }
 BENCHMARK(BM_TriangularAdjoint)->Apply(raster_cases);
 
 void BM_TriangularCurvature(benchmark::State& state) {
   const Setting setting(state);
   const TriangularBSplineBasis<2> basis(setting.net);
-  const auto grid = basis.bind(setting.raster);
-  CurvatureBlocks<2> blocks(setting.raster.size);
-  for (auto& sums : blocks.sums) std::fill(sums.begin(), sums.end(), 0.5f);
-  BlockHessian<2> hessian(
-      std::make_shared<HessianPattern>(basis.num_control_points(), basis.couplings()));
-  for (auto _ : state) {
-    grid->add_curvature(blocks, 1.0, hessian);
-    benchmark::DoNotOptimize(&hessian);
-  }
-  setting.count_pixels(state);
+  time_curvature(state, basis, *basis.bind(setting.raster), setting.raster);
 }
 BENCHMARK(BM_TriangularCurvature)->Apply(all_meshes);
 

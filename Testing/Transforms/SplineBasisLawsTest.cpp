@@ -1,4 +1,4 @@
-// What NURBS and T-spline bases obey as members of the family, written once.
+// What tensor B-spline, NURBS and T-spline bases obey as members of the family, written once.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -8,6 +8,14 @@
 
 namespace crease {
 namespace {
+
+template <int Dim, int Degree>
+struct Tensor {
+  static constexpr int kDim = Dim;
+  static std::shared_ptr<const SplineBasis<Dim>> make() {
+    return std::make_shared<TensorBSplineBasis<Dim>>(testing::small_lattice<Dim>(), Degree);
+  }
+};
 
 template <int Dim, int Degree, bool Rational>
 struct Nurbs {
@@ -47,10 +55,11 @@ class SplineBasisLaws : public ::testing::Test {
   }
 };
 
-using Kinds =
-    ::testing::Types<Nurbs<2, 1, false>, Nurbs<2, 2, true>, Nurbs<2, 3, false>, Nurbs<2, 3, true>,
-                     Nurbs<2, 4, true>, Nurbs<2, 5, true>, Nurbs<3, 2, true>, Nurbs<3, 3, false>,
-                     TSpline<1>, TSpline<3>, TSpline<5>>;
+using Kinds = ::testing::Types<Tensor<2, 1>, Tensor<2, 2>, Tensor<2, 3>, Tensor<2, 4>, Tensor<2, 5>,
+                               Tensor<3, 1>, Tensor<3, 2>, Tensor<3, 3>, Nurbs<2, 1, false>,
+                               Nurbs<2, 2, true>, Nurbs<2, 3, false>, Nurbs<2, 3, true>,
+                               Nurbs<2, 4, true>, Nurbs<2, 5, true>, Nurbs<3, 2, true>,
+                               Nurbs<3, 3, false>, TSpline<1>, TSpline<3>, TSpline<5>>;
 TYPED_TEST_SUITE(SplineBasisLaws, Kinds);
 
 TYPED_TEST(SplineBasisLaws, SumsToOneAndDerivativesToZero) {

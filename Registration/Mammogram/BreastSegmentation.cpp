@@ -100,8 +100,8 @@ cv::Mat labels_in(const Image<float, 2>& image, const Mask<2>& breast, int radiu
   for (int k = 1; k < count; ++k) {
     const auto of = [&](int what) { return statistics.at<int>(k, what); };
     const int width = of(cv::CC_STAT_WIDTH), height = of(cv::CC_STAT_HEIGHT);
-    const cv::Mat pixels = components == k;
     if (of(cv::CC_STAT_AREA) < options.label_fill * width * height) continue;
+    const cv::Mat pixels = components == k;
     if (mean_over(image, pixels) <= breast_mean) continue;
     labels.setTo(1, pixels);
     warnings.push_back(message(options.name, ": a label that touches the breast was cut off, ",

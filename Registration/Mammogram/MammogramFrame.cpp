@@ -94,35 +94,54 @@ Frame film_in(const Image<float, 2>& image, bool negative, const IntensityRange&
   return film;
 }
 
-/// Cuts bright lines along the film's edges off: rows or columns, at most `widest` pixels of them, of which
-/// most is bright while the row or column behind them is not.
-Frame without_scanner_lines(const Image<float, 2>& image, bool negative,
-                            const IntensityRange& range, Frame film,
-                            const std::array<int, 2>& widest, std::vector<std::string>& notes) {
-  constexpr double kBright = 0.6, kMost = 0.5, kFewer = 0.7;
-  const auto level = static_cast<float>(negative ? range.upper - kBright * range.width()
-                                                 : range.lower + kBright * range.width());
-  const auto counts =
-      counts_along_axes(image, film, [&](float v) { return negative ? v < level : v > level; });
-  const auto line_at = [&](int axis, int edge, int step) {
-    const auto bright = [&](int i) {
-      return counts[axis][static_cast<std::size_t>(i)] / double(film[1 - axis].size());
-    };
-    int width = 0;
-    while (width <= widest[axis] && bright(edge + width * step) > kMost) ++width;
-    if (width == 0 || width > widest[axis]) return 0;
-    return bright(edge + width * step) < kFewer * bright(edge) ? width : 0;
+/// An edge of the film: the pixels of its rows (axis 1) or columns (axis 0), counted from outside.
+struct Edge {
+  int axis = 0, outermost = 0, step = 1;
+  const char* name = "";
+};
+
+/// The share of a row's or column's pixels that are clearly brighter than those of another one.
+double share_brighter(const Image<float, 2>& image, const Span& across, int axis, int line,
+                      int other, float clearly) {
+  int count = 0;
+  for (int k = across.first; k < across.last; ++k) {
+    const float here = axis == 0 ? image(line, k) : image(k, line);
+    const float there = axis == 0 ? image(other, k) : image(k, other);
+    count += clearly > 0 ? here - there > clearly : here - there < clearly;
+  }
+  return count / double(across.size());
+}
+
+/// Rows or columns at an edge that are brighter than what lies behind them over a part of their length, while
+/// there is no such step farther in.
+int scanner_line_width(const Image<float, 2>& image, const Frame& film, const Edge& edge,
+                       int widest, float clearly) {
+  constexpr double kPart = 0.1;
+  const auto steps = [&](int from, int to) {
+    return share_brighter(image, film[1 - edge.axis], edge.axis, edge.outermost + from * edge.step,
+                          edge.outermost + to * edge.step, clearly) > kPart;
   };
+  for (int width = 1; width <= widest; ++width) {
+    if (steps(0, width)) return steps(width, width + 1) ? 0 : width;
+  }
+  return 0;
+}
+
+/// Cuts bright lines along the film's edges off.
+/// @param clearly  a difference of grey values; negative where dark stands for bright.
+Frame without_scanner_lines(const Image<float, 2>& image, Frame film,
+                            const std::array<int, 2>& widest, float clearly,
+                            std::vector<std::string>& notes) {
   for (int a = 0; a < 2; ++a) {
-    if (film[a].size() <= 4 * widest[a] + 4) continue;
-    const int before = line_at(a, film[a].first, 1), after = line_at(a, film[a].last - 1, -1);
-    film[a].first += before;
-    film[a].last -= after;
-    for (const auto& [width, where] : {std::pair(before, a == 0 ? "left" : "upper"),
-                                       std::pair(after, a == 0 ? "right" : "lower")}) {
+    if (film[a].size() <= 4 * (widest[a] + 1)) continue;
+    const Edge before{a, film[a].first, 1, a == 0 ? "left" : "upper"};
+    const Edge after{a, film[a].last - 1, -1, a == 0 ? "right" : "lower"};
+    for (const Edge& edge : {before, after}) {
+      const int width = scanner_line_width(image, film, edge, widest[a], clearly);
+      (edge.step > 0 ? film[a].first : film[a].last) += edge.step * width;
       if (width == 0) continue;
       notes.push_back(message("a bright line of ", width, width == 1 ? " pixel" : " pixels",
-                              " along the film's ", where, " edge was cut off"));
+                              " along the film's ", edge.name, " edge was cut off"));
     }
   }
   return film;
@@ -205,6 +224,7 @@ AffineMap<2> MammogramFrame::reflection() const {
 }
 
 MammogramFrame find_frame(const Image<float, 2>& image, const MammogramFrameOptions& options) {
+  constexpr double kClearly = 0.05;  // of the grey values
   check(image, options);
   const IntensityRange range = intensity_range(image);
   if (range.constant()) {
@@ -222,7 +242,8 @@ MammogramFrame find_frame(const Image<float, 2>& image, const MammogramFrameOpti
     widest[a] =
         std::max(1, static_cast<int>(options.scanner_line_mm / frame.raster.spacing[a] + 0.5));
   }
-  film = without_scanner_lines(image, frame.inverted, range, film, widest, frame.notes);
+  const double clearly = (frame.inverted ? -kClearly : kClearly) * range.width();
+  film = without_scanner_lines(image, film, widest, static_cast<float>(clearly), frame.notes);
   for (int a = 0; a < 2; ++a) {
     frame.first[a] = film[a].first;
     frame.size[a] = film[a].size();

@@ -104,11 +104,15 @@ cv::Mat labels_in(const Image<float, 2>& image, const Mask<2>& breast, int radiu
     const cv::Mat pixels = components == k;
     if (mean_over(image, pixels) <= breast_mean) continue;
     labels.setTo(1, pixels);
-    warnings.push_back(message(options.name, ": a label that touches the breast was cut off, ",
-                               "columns ", of(cv::CC_STAT_LEFT), " to ",
-                               of(cv::CC_STAT_LEFT) + width - 1, ", rows ", of(cv::CC_STAT_TOP),
-                               " to ", of(cv::CC_STAT_TOP) + height - 1,
-                               " of the film resampled to ", breast.raster().spacing.x(), " mm"));
+    const Point<2> first =
+        breast.raster().point({double(of(cv::CC_STAT_LEFT)), double(of(cv::CC_STAT_TOP))});
+    const Point<2> last =
+        first + breast.raster().index_to_point() * Vector<2>(width - 1, height - 1);
+    const auto at = [](const Point<2>& p) {
+      return message("(", std::lround(p.x()), ", ", std::lround(p.y()), ")");
+    };
+    warnings.push_back(message(options.name, ": a label that touches the breast was cut off, from ",
+                               at(first), " to ", at(last), " mm"));
   }
   return labels;
 }

@@ -23,7 +23,8 @@ struct GreyHistogram {
   int threshold() const { return valley.value_or(otsu); }
 };
 
-/// Counts grey values between the 0.01 % and 99.99 % percentiles; what lies beyond counts in the outer bins.
+/// Counts grey values between the 0.01 % and 99.99 % percentiles; what lies beyond counts in the outer bins,
+/// which the smoothed logarithms replace by their neighbours.
 /// Values on a coarser grid than the bins are spread evenly over them, so that no bin between is empty.
 ///
 /// The valley is the smallest t above the background's peak b and up to Otsu's threshold with

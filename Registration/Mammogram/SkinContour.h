@@ -43,11 +43,12 @@ struct SkinContour {
   double rms_mm = 0;           ///< of the border pixels' distances from the spline
   int num_control_points = 0;  ///< of the spline
   std::optional<Nipple> nipple;
-  Polyline
-      rest;  ///< the breast's border from the lower end along the frame back to the upper end, mm
+  /// The breast's border from the lower end along the frame back to the upper end, mm.
+  Polyline rest;
 };
 
-/// Follows the border of the breast's mask, without what runs along the frame's edge: its longest run.
+/// Follows the border of the breast's mask, without what runs along the frame's edge: its longest run. Border
+/// pixels lie inside the border, by half a pixel along an axis: the points are moved out on to it.
 /// @param mask  one component.
 /// @throws InvalidInput when the contour is shorter than `shortest_mm`.
 SkinContour find_skin_contour(const Mask<2>& mask, const SkinContourOptions& options = {});

@@ -63,7 +63,7 @@ TEST(BreastSegmentation, CutsATouchingLabelOffAndSaysWhere) {
     }
   }
   const BreastSegmentation breast = segment_breast(drawn.image);
-  EXPECT_THAT(breast.warnings, Contains(AllOf(HasSubstr("label"), HasSubstr("rows"))));
+  EXPECT_THAT(breast.warnings, Contains(AllOf(HasSubstr("label"), HasSubstr(" mm"))));
   EXPECT_GE(dice(breast.mask, drawn.mask), 0.985);
 }
 

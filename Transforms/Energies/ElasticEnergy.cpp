@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -73,11 +74,28 @@ ControlPoints<Dim> gradient_moments(const ElasticPatch<Dim>& patch, const Weight
     for (int a = 0; a < Dim; ++a) {
       const Eigen::VectorXd sums =
           cell.gradients->middleCols(a * weights.size(), weights.size()) * weights;
-      moments.row(a)(cell.positions) += sums.transpose();
+      moments.row(a)(cell.positions) += sums.head(std::ssize(cell.positions)).transpose();
     }
   }
   return moments;
 }
+
+/// Pads the tables, which many cells may share, to rows that vectorised loops like.
+class TablePadding {
+ public:
+  void pad(std::shared_ptr<const Eigen::MatrixXd>& table) {
+    auto& padded = padded_[table];
+    if (!padded) {
+      Eigen::MatrixXd wider = Eigen::MatrixXd::Zero((table->rows() + 3) / 4 * 4, table->cols());
+      wider.topRows(table->rows()) = *table;
+      padded = std::make_shared<const Eigen::MatrixXd>(std::move(wider));
+    }
+    table = padded;
+  }
+
+ private:
+  std::map<std::shared_ptr<const Eigen::MatrixXd>, std::shared_ptr<const Eigen::MatrixXd>> padded_;
+};
 
 /// Number of points at which two functions of a cell both have a gradient: a cell may be several small ones.
 template <int Dim>
@@ -121,9 +139,11 @@ void ElasticEnergy<Dim>::set_materials(std::vector<GradientPatch<Dim>> patches,
     largest_stiffness_ = std::max(largest_stiffness_, lame.lambda + 2 * lame.mu);
     return lame;
   };
+  TablePadding padding;
   for (GradientPatch<Dim>& cells : patches) {
     ElasticPatch<Dim> patch;
-    for (const GradientCell<Dim>& cell : cells.cells) {
+    for (GradientCell<Dim>& cell : cells.cells) {
+      padding.pad(cell.gradients);
       std::vector<LameParameters> lame;
       if (options.region_at) {
         for (Eigen::Index p = 0; p < cell.weights.size(); ++p) {
@@ -254,7 +274,8 @@ void ElasticEnergy<Dim>::add_stiffness(double scale, const HessianPattern& patte
       const Eigen::MatrixXd& gradients = *cell.gradients;
       const Eigen::MatrixXd square =
           gradients * weights.replicate(Dim, 1).asDiagonal() * gradients.transpose();
-      sum(cell.positions, cell.positions) += square;
+      const auto k = std::ssize(cell.positions);
+      sum(cell.positions, cell.positions) += square.topLeftCorner(k, k);
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       for (std::size_t k = 0; k <= i; ++k) {

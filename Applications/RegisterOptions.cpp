@@ -69,8 +69,34 @@ void check_transform(const RegisterOptions& o) {
   }
 }
 
+void check_energy(const RegisterOptions& o) {
+  if (!o.is_elastic()) {
+    if (!o.material.any_given()) return;
+    throw UsageError(
+        "--young, --poisson, --material, --plane and --mean-dilatation describe elastic tissue; "
+        "add "
+        "--energy elastic.");
+  }
+  if (!o.has_basis()) {
+    refuse_if(true, "energy elastic", o,
+              "a spline, such as --transform triangular-bspline or bspline");
+  }
+  const ElasticMaterial material = material_of(o.material);  // throws
+  if (!material.regions.empty() && !o.may_have_bodies()) {
+    throw UsageError(
+        message("--young, --poisson: region ", material.regions.begin()->first,
+                " is named, but there are no labels; add --rigid-labels FILE (with --beta "
+                "0 if its regions are not rigid)."));
+  }
+}
+
 void check_adaptation(const RegisterOptions& o) {
   if (o.adapt == 0) return;
+  if (o.is_elastic()) {
+    throw UsageError(
+        "--adapt needs bending, which says what finer patches cost; leave --energy "
+        "elastic out.");
+  }
   if (o.image_weight() == 0) throw UsageError("--adapt needs images to ask for finer patches.");
   if (o.gamma && *o.gamma == 0) {
     throw UsageError(
@@ -116,9 +142,10 @@ void check_weights(const RegisterOptions& o) {
         "--feature-lines FILE with closed lines.");
   }
   const bool bending = !o.gamma || *o.gamma > 0;
-  if (bending && o.spline_degree() == 1) {
+  if (bending && !o.is_elastic() && o.spline_degree() == 1) {
     throw UsageError(
-        "--degree 1: such splines have no bending energy; take --degree 2 or more, or "
+        "--degree 1: such splines have no bending energy; take --degree 2 or more, --energy "
+        "elastic, or "
         "--gamma 0.");
   }
   const bool rigidity = o.may_have_bodies() && o.rigidity_weight() > 0;
@@ -312,8 +339,13 @@ std::vector<Option> cost_options(RegisterOptions& o) {
        .placeholder = "G",
        .help =
            "Weight of bending, mm^2 (balanced against the noise that the images show, from 0.001 "
-           "times the mean edge length squared on)",
+           "times the mean edge length squared on), or of the elastic energy (likewise, from 0.001 "
+           "on)",
        .minimum = 0},
+      {.name = "energy",
+       .target = &o.energy,
+       .help = "What smooths the motion: it resists bending, or it deforms an elastic body",
+       .choices = {"bending", "elastic"}},
   };
 }
 
@@ -382,8 +414,8 @@ bool RegisterOptions::init_is_file() const {
 
 std::vector<Option> options_of(RegisterOptions& options) {
   std::vector<Option> all = input_options(options);
-  for (auto part : {domain_options(options), cost_options(options), solver_options(options),
-                    options_of(options.run)}) {
+  for (auto part : {domain_options(options), cost_options(options), options_of(options.material),
+                    solver_options(options), options_of(options.run)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -392,6 +424,7 @@ std::vector<Option> options_of(RegisterOptions& options) {
 void check(const RegisterOptions& options) {
   check_channels(options);
   check_transform(options);
+  check_energy(options);
   check_adaptation(options);
   check_landmarks(options);
   check_weights(options);

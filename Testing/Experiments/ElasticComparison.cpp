@@ -117,7 +117,7 @@ Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
       size, Sums{},
       [&](std::int64_t row, Sums& partial) {
         for (int i = 0; i < size; ++i) {
-          const Point<2> x(i + 0.5, row + 0.5), p = x / kMammogramWidthMm;
+          const Point<2> x(i + 0.5, static_cast<double>(row) + 0.5), p = x / kMammogramWidthMm;
           if (!(skin_depth(p) > 0) || !body.basis->contains(x)) continue;
           const Point<2> y = map.map(x);
           const double error = (y - truth(x)).squaredNorm();

@@ -24,7 +24,9 @@ constexpr int kSeeds = 5;
 constexpr int kTriangles = 600;
 constexpr int kContourPairs = 29;
 constexpr int kTruthPairs = 145;  // contour points of the truth
-constexpr double kBand = 5;       // mm on both sides of the muscle's edge
+// Of the phantom's motion: under all of it St. Venant-Kirchhoff tissue folds at the ends of the contour.
+constexpr double kLoad = 0.5;
+constexpr double kBand = 5;  // mm on both sides of the muscle's edge
 const std::vector<Point<2>> kInnerPairs = {{30, 70},  {60, 65},  {45, 100}, {80, 100},
                                            {95, 120}, {60, 130}, {25, 120}, {40, 155}};  // mm
 enum Variant { kCreases, kNoCreases, kLagrange };
@@ -65,14 +67,18 @@ ElasticDeformation body_on(const DomainMesh& domain, Variant variant) {
   return body;
 }
 
-/// Fixed points along the contour at equal steps of its length, then those inside.
-Landmarks<2> pairs_of(int num_contour, const std::function<Point<2>(const Point<2>&)>& map) {
+/// Points along the contour at equal steps of its length, slightly inside.
+std::vector<Point<2>> contour_points(int count) {
+  std::vector<Point<2>> points;
+  for (double theta : skin_angles_by_length(count)) points.push_back(contour_point(theta));
+  return points;
+}
+
+Landmarks<2> pairs_of(std::vector<Point<2>> fixed,
+                      const std::function<Point<2>(const Point<2>&)>& map) {
   Landmarks<2> pairs;
-  for (double theta : skin_angles_by_length(num_contour)) {
-    pairs.fixed.push_back(contour_point(theta));
-  }
-  pairs.fixed.insert(pairs.fixed.end(), kInnerPairs.begin(), kInnerPairs.end());
-  for (const auto& p : pairs.fixed) pairs.moving.push_back(map(p));
+  for (const auto& p : fixed) pairs.moving.push_back(map(p));
+  pairs.fixed = std::move(fixed);
   return pairs;
 }
 
@@ -108,6 +114,17 @@ class Picture {
   MammogramTissue tissue_;
 };
 
+/// The template at y, which shows the fixed breast, carried by the truth. Beyond the skin the truth goes on in
+/// kinks, where it need not have an inverse: there is film.
+double template_grey(const Picture& picture, const MammogramDeformation& truth, const Point<2>& y,
+                     const Point<2>& start) {
+  try {
+    return picture(truth.inverse(y, start));
+  } catch (const SolverError&) {
+    return 0;
+  }
+}
+
 /// Looks at points 1 mm apart in the breast.
 Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
                 const MammogramDeformation& truth, const Picture& picture) {
@@ -128,10 +145,9 @@ Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
             partial.band += error;
             ++partial.num_band;
           }
-          // The template shows the fixed breast, carried by the truth.
           const double reference = picture(x);
-          partial.before += std::pow(picture(truth.inverse(x, x)) - reference, 2);
-          partial.after += std::pow(picture(truth.inverse(y, x)) - reference, 2);
+          partial.before += std::pow(template_grey(picture, truth, x, x) - reference, 2);
+          partial.after += std::pow(template_grey(picture, truth, y, x) - reference, 2);
         }
       },
       1);
@@ -170,12 +186,15 @@ int main() try {
                   {"triangles", coarse.mesh.simplices.size()},
                   {"unknowns", 2 * bodies[kCreases].basis->num_control_points()},
                   {"seeds", Json::array()}};
+  // Contour and inside.
+  std::vector<Point<2>> known = contour_points(kContourPairs);
+  known.insert(known.end(), kInnerPairs.begin(), kInnerPairs.end());
   std::vector<Threshold> thresholds;
   int wins_no_creases = 0, wins_lagrange = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const MammogramDeformation load(
-        draw_mammogram_motion(mammogram_random(seed, MammogramStream::kMotion)));
-    exact.pairs = pairs_of(kTruthPairs, load);
+        draw_mammogram_motion(mammogram_random(seed, MammogramStream::kMotion)).scaled(kLoad));
+    exact.pairs = pairs_of(contour_points(kTruthPairs), load);
     const auto truth_map = std::make_shared<const SplineTransform<2>>(
         transform_of(exact, deform_elastically(exact, quick)));
     const MammogramDeformation truth(MammogramMotion{}, truth_map);
@@ -184,7 +203,7 @@ int main() try {
     double band[3];
     for (Variant variant : {kCreases, kNoCreases, kLagrange}) {
       ElasticDeformation& body = bodies[variant];
-      body.pairs = pairs_of(kContourPairs, truth);
+      body.pairs = pairs_of(known, truth);
       const Outcome outcome = compare(body, deform_elastically(body, quick), truth, picture);
       of_seed[kNames[variant]] = to_json(outcome);
       band[variant] = outcome.tre_band;

@@ -24,7 +24,9 @@ constexpr int kSeeds = 5;
 constexpr int kTriangles = 600;
 constexpr int kContourPairs = 29;
 constexpr int kTruthPairs = 145;  // contour points of the truth
-constexpr double kBand = 5;       // mm on both sides of the muscle's edge
+// Of the phantom's motion: under all of it St. Venant-Kirchhoff tissue folds at the ends of the contour.
+constexpr double kLoad = 0.5;
+constexpr double kBand = 5;  // mm on both sides of the muscle's edge
 const std::vector<Point<2>> kInnerPairs = {{30, 70},  {60, 65},  {45, 100}, {80, 100},
                                            {95, 120}, {60, 130}, {25, 120}, {40, 155}};  // mm
 enum Variant { kCreases, kNoCreases, kLagrange };
@@ -65,14 +67,18 @@ ElasticDeformation body_on(const DomainMesh& domain, Variant variant) {
   return body;
 }
 
-/// Fixed points along the contour at equal steps of its length, then those inside.
-Landmarks<2> pairs_of(int num_contour, const std::function<Point<2>(const Point<2>&)>& map) {
+/// Points along the contour at equal steps of its length, slightly inside.
+std::vector<Point<2>> contour_points(int count) {
+  std::vector<Point<2>> points;
+  for (double theta : skin_angles_by_length(count)) points.push_back(contour_point(theta));
+  return points;
+}
+
+Landmarks<2> pairs_of(std::vector<Point<2>> fixed,
+                      const std::function<Point<2>(const Point<2>&)>& map) {
   Landmarks<2> pairs;
-  for (double theta : skin_angles_by_length(num_contour)) {
-    pairs.fixed.push_back(contour_point(theta));
-  }
-  pairs.fixed.insert(pairs.fixed.end(), kInnerPairs.begin(), kInnerPairs.end());
-  for (const auto& p : pairs.fixed) pairs.moving.push_back(map(p));
+  for (const auto& p : fixed) pairs.moving.push_back(map(p));
+  pairs.fixed = std::move(fixed);
   return pairs;
 }
 
@@ -108,6 +114,17 @@ class Picture {
   MammogramTissue tissue_;
 };
 
+/// The template at y, which shows the fixed breast, carried by the truth. Beyond the skin the truth goes on in
+/// kinks, where it need not have an inverse: there is film.
+double template_grey(const Picture& picture, const MammogramDeformation& truth, const Point<2>& y,
+                     const Point<2>& start) {
+  try {
+    return picture(truth.inverse(y, start));
+  } catch (const SolverError&) {
+    return 0;
+  }
+}
+
 /// Looks at points 1 mm apart in the breast.
 Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
                 const MammogramDeformation& truth, const Picture& picture) {
@@ -117,7 +134,7 @@ Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
       size, Sums{},
       [&](std::int64_t row, Sums& partial) {
         for (int i = 0; i < size; ++i) {
-          const Point<2> x(i + 0.5, row + 0.5), p = x / kMammogramWidthMm;
+          const Point<2> x(i + 0.5, static_cast<double>(row) + 0.5), p = x / kMammogramWidthMm;
           if (!(skin_depth(p) > 0) || !body.basis->contains(x)) continue;
           const Point<2> y = map.map(x);
           const double error = (y - truth(x)).squaredNorm();
@@ -128,10 +145,9 @@ Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
             partial.band += error;
             ++partial.num_band;
           }
-          // The template shows the fixed breast, carried by the truth.
           const double reference = picture(x);
-          partial.before += std::pow(picture(truth.inverse(x, x)) - reference, 2);
-          partial.after += std::pow(picture(truth.inverse(y, x)) - reference, 2);
+          partial.before += std::pow(template_grey(picture, truth, x, x) - reference, 2);
+          partial.after += std::pow(template_grey(picture, truth, y, x) - reference, 2);
         }
       },
       1);
@@ -157,35 +173,30 @@ Json to_json(const Outcome& o) {
           {"pair_error_mm", o.pair_error}};
 }
 
-}  // namespace
+/// The variants on one mesh, with so many pairs along the contour; counts the seeds on which creases err least near
+/// the muscle's edge.
+class Comparison {
+ public:
+  Comparison(const DomainMesh& mesh, int contour_pairs) : known_(contour_points(contour_pairs)) {
+    known_.insert(known_.end(), kInnerPairs.begin(), kInnerPairs.end());
+    for (Variant variant : {kCreases, kNoCreases, kLagrange}) {
+      bodies_.push_back(body_on(mesh, variant));
+    }
+    figures_ = {{"contour_pairs", contour_pairs},
+                {"inner_pairs", kInnerPairs.size()},
+                {"unknowns", 2 * bodies_[kCreases].basis->num_control_points()},
+                {"seeds", Json::array()}};
+  }
 
-int main() try {
-  const LoadStepOptions quick{.schedule = LoadSchedule::kAdaptive};
-  const DomainMesh coarse = breast_mesh(kTriangles), fine = breast_mesh(16 * kTriangles);
-  ElasticDeformation exact = body_on(fine, kLagrange);
-  std::vector<ElasticDeformation> bodies;
-  for (Variant variant : {kCreases, kNoCreases, kLagrange})
-    bodies.push_back(body_on(coarse, variant));
-  Json figures = {{"table", "4.2"},
-                  {"triangles", coarse.mesh.simplices.size()},
-                  {"unknowns", 2 * bodies[kCreases].basis->num_control_points()},
-                  {"seeds", Json::array()}};
-  std::vector<Threshold> thresholds;
-  int wins_no_creases = 0, wins_lagrange = 0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    const MammogramDeformation load(
-        draw_mammogram_motion(mammogram_random(seed, MammogramStream::kMotion)));
-    exact.pairs = pairs_of(kTruthPairs, load);
-    const auto truth_map = std::make_shared<const SplineTransform<2>>(
-        transform_of(exact, deform_elastically(exact, quick)));
-    const MammogramDeformation truth(MammogramMotion{}, truth_map);
+  void add(int seed, const MammogramDeformation& truth, std::vector<Threshold>& thresholds) {
     const Picture picture(static_cast<std::uint64_t>(seed));
     Json of_seed = {{"seed", seed}};
     double band[3];
     for (Variant variant : {kCreases, kNoCreases, kLagrange}) {
-      ElasticDeformation& body = bodies[variant];
-      body.pairs = pairs_of(kContourPairs, truth);
-      const Outcome outcome = compare(body, deform_elastically(body, quick), truth, picture);
+      ElasticDeformation& body = bodies_[variant];
+      body.pairs = pairs_of(known_, truth);
+      const Outcome outcome = compare(
+          body, deform_elastically(body, {.schedule = LoadSchedule::kAdaptive}), truth, picture);
       of_seed[kNames[variant]] = to_json(outcome);
       band[variant] = outcome.tre_band;
       const std::string with = message(", ", kNames[variant], ", seed ", seed);
@@ -193,12 +204,50 @@ int main() try {
       thresholds.push_back({"smallest determinant" + with, outcome.least_determinant, 0.1, true});
       thresholds.push_back({"improvement (%)" + with, outcome.improvement, 50, true});
     }
-    wins_no_creases += band[kCreases] < band[kNoCreases];
-    wins_lagrange += band[kCreases] < band[kLagrange];
-    figures["seeds"].push_back(of_seed);
+    better_than_smooth_ += band[kCreases] < band[kNoCreases];
+    better_than_lagrange_ += band[kCreases] < band[kLagrange];
+    figures_["seeds"].push_back(of_seed);
   }
-  figures["creases_better_in_band_than_no_creases"] = wins_no_creases;
-  figures["creases_better_in_band_than_lagrange"] = wins_lagrange;
+
+  int better_than_smooth() const { return better_than_smooth_; }
+  Json figures() const {
+    Json all = figures_;
+    all["creases_better_in_band_than_no_creases"] = better_than_smooth_;
+    all["creases_better_in_band_than_lagrange"] = better_than_lagrange_;
+    return all;
+  }
+
+ private:
+  std::vector<Point<2>> known_;
+  std::vector<ElasticDeformation> bodies_;
+  Json figures_;
+  int better_than_smooth_ = 0, better_than_lagrange_ = 0;
+};
+
+}  // namespace
+
+int main() try {
+  const DomainMesh coarse = breast_mesh(kTriangles), fine = breast_mesh(16 * kTriangles);
+  ElasticDeformation exact = body_on(fine, kLagrange);
+  // As many pairs as in the text: then what they leave open between them outweighs what the spaces err; and
+  // twice as many, which leave the spaces' errors.
+  Comparison few(coarse, kContourPairs), many(coarse, 2 * kContourPairs);
+  std::vector<Threshold> thresholds;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const MammogramDeformation load(
+        draw_mammogram_motion(mammogram_random(seed, MammogramStream::kMotion)).scaled(kLoad));
+    exact.pairs = pairs_of(contour_points(kTruthPairs), load);
+    const auto truth_map = std::make_shared<const SplineTransform<2>>(
+        transform_of(exact, deform_elastically(exact, {.schedule = LoadSchedule::kAdaptive})));
+    const MammogramDeformation truth(MammogramMotion{}, truth_map);
+    few.add(seed, truth, thresholds);
+    many.add(seed, truth, thresholds);
+  }
+  thresholds.push_back({"seeds on which creases beat smooth splines near the muscle",
+                        static_cast<double>(many.better_than_smooth()), 4, true});
+  const Json figures = {{"table", "4.2"},
+                        {"triangles", coarse.mesh.simplices.size()},
+                        {"comparisons", {few.figures(), many.figures()}}};
   return finish(figures, thresholds);
 } catch (const std::exception& error) {
   return give_up(error);

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "Images/IntensityRange.h"
 #include "Registration/Pictures.h"
 #include "Registration/PicturesCanvas.h"
 #include "Registration/PicturesLines.h"
@@ -15,7 +13,6 @@ using canvas::Colour;
 
 constexpr Colour kGrid{70, 190, 230}, kMesh{95, 205, 190}, kFeature{255, 140, 0},
     kLandmark{255, 60, 170};
-constexpr double kDimmed = 0.85, kGamma = 0.75;  // grey levels of the image below the lines
 
 std::vector<std::vector<Point<2>>> mesh_edges(const SimplexMesh<2>& mesh) {
   std::set<std::pair<int, int>> edges;
@@ -27,22 +24,6 @@ std::vector<std::vector<Point<2>>> mesh_edges(const SimplexMesh<2>& mesh) {
   std::vector<std::vector<Point<2>>> lines;
   for (const auto& [a, b] : edges) lines.push_back({mesh.vertices[a], mesh.vertices[b]});
   return lines;
-}
-
-template <int Dim>
-Picture dimmed_panel(const Image<float, Dim>& image, const Slice<Dim>& slice) {
-  const IntensityRange window = intensity_percentiles(image);
-  const Image<float, 2> plane = pixels(image, slice);
-  Picture picture = canvas::blank(slice.width, slice.height, canvas::kPaper);
-  for (int y = 0; y < slice.height; ++y) {
-    for (int x = 0; x < slice.width; ++x) {
-      const double t = window.constant() ? 0.5 : (plane(x, y) - window.lower) / window.width();
-      const auto g = static_cast<std::uint8_t>(
-          std::lround(255 * kDimmed * std::pow(std::clamp(t, 0.0, 1.0), kGamma)));
-      canvas::set_pixel(picture, x, y, {g, g, g});
-    }
-  }
-  return picture;
 }
 
 template <int Dim>

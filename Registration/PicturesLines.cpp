@@ -3,7 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Images/IntensityRange.h"
+#include "Registration/PicturesCanvas.h"
+
 namespace crease {
+
+template <int Dim>
+Picture dimmed_panel(const Image<float, Dim>& image, const Slice<Dim>& slice) {
+  constexpr double kDimmed = 0.85, kGamma = 0.75;
+  const IntensityRange window = intensity_percentiles(image);
+  const Image<float, 2> plane = pixels(image, slice);
+  Picture picture = canvas::blank(slice.width, slice.height, canvas::kPaper);
+  for (int y = 0; y < slice.height; ++y) {
+    for (int x = 0; x < slice.width; ++x) {
+      const double t = window.constant() ? 0.5 : (plane(x, y) - window.lower) / window.width();
+      const auto g = static_cast<std::uint8_t>(
+          std::lround(255 * kDimmed * std::pow(std::clamp(t, 0.0, 1.0), kGamma)));
+      canvas::set_pixel(picture, x, y, {g, g, g});
+    }
+  }
+  return picture;
+}
 
 template <int Dim>
 std::vector<std::vector<Point<Dim>>> grid_lines(const Raster<Dim>& raster, const Slice<Dim>& slice,
@@ -56,6 +76,8 @@ Polyline closed_points(const FeatureLine& line) {
   return points;
 }
 
+template Picture dimmed_panel<2>(const Image<float, 2>&, const Slice<2>&);
+template Picture dimmed_panel<3>(const Image<float, 3>&, const Slice<3>&);
 template std::vector<std::vector<Point<2>>> grid_lines<2>(const Raster<2>&, const Slice<2>&, int,
                                                           double);
 template std::vector<std::vector<Point<3>>> grid_lines<3>(const Raster<3>&, const Slice<3>&, int,

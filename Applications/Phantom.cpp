@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "Applications/ExitCode.h"
-#include "Applications/OutputFolder.h"
+#include "Applications/PhantomFiles.h"
+#include "Applications/PhantomMammogram.h"
 #include "Applications/ProgressReporter.h"
 #include "Applications/RunReport.h"
 #include "Images/ImageFile.h"
@@ -27,7 +28,10 @@ struct PhantomCommand {
   std::optional<double> noise;
   bool no_texture = false;
   double landmark_noise = 0;
+  MammogramCommand mammogram;
 };
+
+constexpr const char* kMammogram = "mammogram";
 
 constexpr const char* kDetails =
     R"(Writes fixed.mha, moving.mha, truth.mha (displacement on the fixed grid, mm), phantom.json, config.toml,
@@ -39,17 +43,32 @@ landmarks.csv. Pixels are 1 mm; fixed(x) = moving(T(x)) exactly.
   spine    five vertebrae with discs between them bend and stretch (512)
   blobs    soft blobs under a smooth random warp, no bodies (256; with --dimension 3 a volume, 96)
 
+  mammogram   a breast with gland, milk ducts and pectoral muscle, twice (1024; the frame is 204.8 mm wide)
+
+Mammograms differ by gain, gamma and noise as well, and masses, outlines and ducts are known in both: mask.mha,
+outline.csv (skin line), branches.csv (where ducts fork or cross, with the directions of the ducts there in
+radians from x to y) and the same with moving- before the name; feature-lines.csv is the edge of the pectoral
+muscle, labels.mha the muscle; landmarks.csv holds pairs on the skin line, the nipple and forks of ducts;
+phantom.json has nipples and all parameters.
+
 Example:
   crease phantom spine --seed 7 --output spine
   crease register --fixed spine/fixed.mha --moving spine/moving.mha --rigid-labels spine/labels.mha \
-      --landmarks spine/landmarks.csv --output spine/registered)";
+      --landmarks spine/landmarks.csv --output spine/registered
+  crease phantom mammogram --view cc --bilateral --density 0.8 --output breasts)";
+
+std::vector<std::string> all_kinds() {
+  auto kinds = phantom_kinds();
+  kinds.emplace_back(kMammogram);
+  return kinds;
+}
 
 std::vector<Option> options_of(PhantomCommand& c) {
   std::vector<Option> options = {
       {.name = "kind",
        .target = &c.kind,
        .help = "What to draw",
-       .choices = phantom_kinds(),
+       .choices = all_kinds(),
        .required = true,
        .positional = true},
       {.name = "output",
@@ -62,7 +81,8 @@ std::vector<Option> options_of(PhantomCommand& c) {
       {.name = "size",
        .target = &c.size,
        .placeholder = "N",
-       .help = "Pixels per axis, 64 to 4096, in 3D 16 to 512; without it the kind's own",
+       .help = "Pixels per axis, 64 to 4096 (mammograms: from 128), in 3D 16 to 512; without it "
+               "the kind's own",
        .minimum = 16,
        .maximum = 4096},
       {.name = "dimension",
@@ -86,8 +106,9 @@ std::vector<Option> options_of(PhantomCommand& c) {
        .minimum = 0,
        .maximum = 64},
   };
-  const auto run = options_of(c.run);
-  options.insert(options.end(), run.begin(), run.end());
+  for (const auto& more : {options_of(c.mammogram), options_of(c.run)}) {
+    options.insert(options.end(), more.begin(), more.end());
+  }
   return options;
 }
 
@@ -108,28 +129,6 @@ Json body_list(const Phantom& phantom) {
   }
   return bodies;
 }
-
-/// Writes files and remembers their names.
-class PhantomFiles {
- public:
-  using Path = std::filesystem::path;
-  explicit PhantomFiles(const std::string& folder) : output_(folder) {}
-
-  void write(const char* name, const std::function<void(const Path&)>& writer) {
-    output_.write(name, writer);
-    names_.emplace_back(name);
-  }
-  void write_text(const char* name, const std::string& text) {
-    output_.write_text(name, text);
-    names_.emplace_back(name);
-  }
-  const OutputFolder& output() const { return output_; }
-  const std::vector<std::string>& names() const { return names_; }
-
- private:
-  OutputFolder output_;
-  std::vector<std::string> names_;
-};
 
 template <int Dim>
 void write_images(PhantomFiles& files, const PhantomImages<Dim>& phantom) {
@@ -173,8 +172,10 @@ ExitCode finish(PhantomFiles& files, const PhantomCommand& command, RunReport& r
   return ExitCode::kSuccess;
 }
 
-ExitCode make(const PhantomCommand& command, const std::string& config) {
-  const int smallest = command.dimension == 2 ? 64 : 16;
+// @throws UsageError when options contradict the kind or each other.
+void check(const PhantomCommand& command) {
+  const bool mammogram = command.kind == kMammogram;
+  const int smallest = command.dimension == 3 ? 16 : mammogram ? 128 : 64;
   const int largest = command.dimension == 2 ? 4096 : 512;
   if (command.size && (*command.size < smallest || *command.size > largest)) {
     throw UsageError(
@@ -184,25 +185,55 @@ ExitCode make(const PhantomCommand& command, const std::string& config) {
     throw UsageError(
         message("--dimension 3: there are volumes of blobs only, not of ", command.kind, "."));
   }
-  RunReport report("phantom", prepare_process(command.run));
-  ProgressReporter progress(command.run, "phantom");
-  progress.report({.stage = "phantom"});
-  PhantomFiles files(command.output);
-  const PhantomOptions options = {.size = command.size.value_or(0),
-                                  .seed = static_cast<std::uint64_t>(command.run.seed),
-                                  .texture = !command.no_texture,
-                                  .noise = command.noise,
-                                  .landmark_noise_mm = command.landmark_noise};
-  if (command.dimension == 3) {
-    const VolumePhantom phantom = make_volume_phantom(command.kind, options);
-    report.end_stage("phantom");
-    write_images(files, phantom);
-    const auto& size = phantom.fixed.size();
-    return finish(files, command, report, config, description(phantom, command),
-                  fmt::format("{}: {} x {} x {} voxels, in {}\n", phantom.kind, size[0], size[1],
-                              size[2], command.output));
+  if (mammogram && (command.no_texture || command.landmark_noise != 0)) {
+    throw UsageError(message(command.no_texture ? "--no-texture" : "--landmark-noise",
+                             ": mammograms have textures and exact landmarks."));
   }
-  const Phantom phantom = make_phantom(command.kind, options);
+  if (!mammogram && !command.mammogram.given().empty()) {
+    throw UsageError(
+        message(command.mammogram.given(), " is for mammograms, not for ", command.kind, "."));
+  }
+  phantom_options(command.mammogram);
+}
+
+PhantomOptions phantom_options(const PhantomCommand& command) {
+  return {.size = command.size.value_or(0),
+          .seed = static_cast<std::uint64_t>(command.run.seed),
+          .texture = !command.no_texture,
+          .noise = command.noise,
+          .landmark_noise_mm = command.landmark_noise};
+}
+
+ExitCode make_volume(const PhantomCommand& command, PhantomFiles& files, RunReport& report,
+                     const std::string& config) {
+  const VolumePhantom phantom = make_volume_phantom(command.kind, phantom_options(command));
+  report.end_stage("phantom");
+  write_images(files, phantom);
+  const auto& size = phantom.fixed.size();
+  return finish(files, command, report, config, description(phantom, command),
+                fmt::format("{}: {} x {} x {} voxels, in {}\n", phantom.kind, size[0], size[1],
+                            size[2], command.output));
+}
+
+ExitCode make_mammograms(const PhantomCommand& command, PhantomFiles& files, RunReport& report,
+                         const std::string& config) {
+  MammogramPhantomOptions options = phantom_options(command.mammogram);
+  options.seed = static_cast<std::uint64_t>(command.run.seed);
+  if (command.size) options.size = *command.size;
+  if (command.noise) options.noise = *command.noise;
+  const MammogramPhantom phantom = make_mammogram_phantom(options);
+  report.end_stage("phantom");
+  write_mammograms(files, phantom, options.bits);
+  return finish(
+      files, command, report, config, mammogram_description(phantom, options),
+      fmt::format(
+          "mammogram: {0} x {0} pixels, {1} branches and crossings, {2} landmarks, in {3}\n",
+          options.size, phantom.fixed.marks.size(), phantom.landmarks.size(), command.output));
+}
+
+ExitCode make_image(const PhantomCommand& command, PhantomFiles& files, RunReport& report,
+                    const std::string& config) {
+  const Phantom phantom = make_phantom(command.kind, phantom_options(command));
   report.end_stage("phantom");
   write_images(files, phantom);
   write_bodies(files, phantom);
@@ -212,6 +243,18 @@ ExitCode make(const PhantomCommand& command, const std::string& config) {
                 fmt::format("{}: {} x {} pixels, {} bodies, {} landmarks, in {}\n", phantom.kind,
                             phantom.fixed.size()[0], phantom.fixed.size()[1], phantom.bodies.size(),
                             phantom.landmarks.size(), command.output));
+}
+
+ExitCode make(const PhantomCommand& command, const std::string& config) {
+  check(command);
+  RunReport report("phantom", prepare_process(command.run));
+  ProgressReporter progress(command.run, "phantom");
+  progress.report({.stage = "phantom"});
+  PhantomFiles files(command.output);
+  const auto make_kind = command.dimension == 3       ? make_volume
+                         : command.kind == kMammogram ? make_mammograms
+                                                      : make_image;
+  return make_kind(command, files, report, config);
 }
 
 }  // namespace

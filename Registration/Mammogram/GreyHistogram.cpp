@@ -96,7 +96,8 @@ int otsu_threshold(const std::array<double, kBins>& counts) {
   return best;
 }
 
-/// ln(1 + counts) blurred by a Gaussian of 1 bin, the outer bins repeated.
+/// ln(1 + counts) blurred by a Gaussian of 1 bin. The outer bins, where clipped values pile up, are replaced by
+/// their neighbours, which stand for what lies beyond, too.
 std::array<double, kBins> smoothed_logarithms(const std::array<double, kBins>& counts) {
   constexpr int kReach = 4;
   std::array<double, kBins> result{};
@@ -105,7 +106,7 @@ std::array<double, kBins> smoothed_logarithms(const std::array<double, kBins>& c
   for (int t = 0; t < kBins; ++t) {
     for (int d = -kReach; d <= kReach; ++d) {
       result[t] +=
-          std::exp(-0.5 * d * d) / sum * std::log1p(counts[std::clamp(t + d, 0, kBins - 1)]);
+          std::exp(-0.5 * d * d) / sum * std::log1p(counts[std::clamp(t + d, 1, kBins - 2)]);
     }
   }
   return result;

@@ -55,27 +55,37 @@ struct Band {
   double deviations() const { return squares - sum * sum / count; }
 };
 
-/// Brighter less darker side in pooled standard deviations; 0 where one side is empty.
+/// Brighter less darker side in standard deviations; 0 where one side is empty. Both are measured piece by piece,
+/// so that greys that change along the line do not count as noise.
 double contrast_along(const View& view, const Polyline& line, const PectoralOptions& options) {
-  Band bright, dark;
+  constexpr double kPiece = 10;  // mm
   const int near = static_cast<int>(std::ceil(options.band_near_mm / view.pixel_mm));
   const int far = static_cast<int>(std::floor(options.band_far_mm / view.pixel_mm));
   const int count = std::max(2, static_cast<int>(polyline_length(line, false)));
   const Polyline points = resample_polyline(line, false, count);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Vector<2> along = (points[i] - points[i - 1]).normalized();
-    const Vector<2> away(along.y(), -along.x());  // from the corner, for lines that go down
-    for (int k = near; k <= far; ++k) {
-      const Point<2> inner = points[i] - k * away, outer = points[i] + k * away;
-      if (view.holds(view.allowed, inner)) bright.add(view.value(view.grey, inner));
-      if (view.holds(view.allowed, outer)) dark.add(view.value(view.grey, outer));
+  const auto per_piece = std::max<std::size_t>(2, std::lround(kPiece / view.pixel_mm));
+  double difference = 0, deviations = 0;
+  int samples = 0, degrees = 0;
+  for (std::size_t first = 1; first < points.size(); first += per_piece) {
+    Band bright, dark;
+    for (std::size_t i = first; i < std::min(points.size(), first + per_piece); ++i) {
+      const Vector<2> along = (points[i] - points[i - 1]).normalized();
+      const Vector<2> away(along.y(), -along.x());  // from the corner, for lines that go down
+      for (int k = near; k <= far; ++k) {
+        const Point<2> inner = points[i] - k * away, outer = points[i] + k * away;
+        if (!view.holds(view.allowed, inner) || !view.holds(view.allowed, outer)) continue;
+        bright.add(view.value(view.grey, inner));
+        dark.add(view.value(view.grey, outer));
+      }
     }
+    if (bright.count < 2) continue;
+    difference += bright.count * (bright.mean() - dark.mean());
+    deviations += bright.deviations() + dark.deviations();
+    samples += bright.count;
+    degrees += bright.count + dark.count - 2;
   }
-  if (bright.count < 2 || dark.count < 2) return 0;
-  const double variance =
-      (bright.deviations() + dark.deviations()) / (bright.count + dark.count - 2);
-  const double difference = bright.mean() - dark.mean();
-  return variance > 0 ? difference / std::sqrt(variance) : 0.0;
+  if (samples == 0 || !(deviations > 0)) return 0;
+  return difference / samples / std::sqrt(deviations / degrees);
 }
 
 /// The longest stretch of points that lie in the mask.

@@ -54,9 +54,30 @@ std::vector<cv::Point> part(const std::vector<cv::Point>& ring, const Run& run) 
   return pixels;
 }
 
-Polyline in_mm(const std::vector<cv::Point>& pixels, const Raster<2>& raster) {
+/// Border pixels lie inside the border: their centres are moved outwards on to it, by half a pixel where it runs
+/// along an axis and by less where it is slanted.
+Polyline on_border(const Polyline& pixels, bool outside_on_left) {
+  constexpr std::ptrdiff_t kReach = 4;  // for the direction
+  Polyline points = pixels;
+  const std::ptrdiff_t last = std::ssize(pixels) - 1;
+  for (std::ptrdiff_t i = 0; i <= last; ++i) {
+    const Vector<2> along =
+        pixels[std::min(last, i + kReach)] - pixels[std::max<std::ptrdiff_t>(0, i - kReach)];
+    if (!(along.norm() > 0)) continue;
+    const Vector<2> left = turned_left(along.normalized());
+    points[i] += (outside_on_left ? 0.5 : -0.5) * left.cwiseAbs().maxCoeff() * left;
+  }
+  return points;
+}
+
+Polyline as_points(const std::vector<cv::Point>& pixels) {
   Polyline points;
-  for (const auto& p : pixels) points.push_back(raster.point({double(p.x), double(p.y)}));
+  for (const auto& p : pixels) points.emplace_back(p.x, p.y);
+  return points;
+}
+
+Polyline in_mm(Polyline points, const Raster<2>& raster) {
+  for (auto& p : points) p = raster.point(p);
   return points;
 }
 
@@ -145,7 +166,9 @@ std::optional<Nipple> find_nipple(const Polyline& points, const SkinContourOptio
   if (num_control_points < 8) return std::nullopt;
   const SplineCurve curve = fit_curve(points, num_control_points).curve;
   const int count = std::max(64, static_cast<int>(2 * length));
-  std::vector<double> outward = scaled_curvatures(curve, count);
+  const double spacing = curve.length() / (count - 1);
+  std::vector<double> outward =
+      blurred(scaled_curvatures(curve, count), options.nipple_blur_mm / spacing);
   if (signed_area(points) < 0) {
     for (double& c : outward) c = -c;
   }
@@ -157,7 +180,7 @@ std::optional<Nipple> find_nipple(const Polyline& points, const SkinContourOptio
   constexpr double kEnds = 0.05;  // of the length: there the film's edge bends the contour
   for (const Bump& bump : bumps(outward, median, options.nipple_deviations * sigma)) {
     const double t = bump.peak / double(count - 1);
-    const double width = (bump.last - bump.first + 1) * curve.length() / (count - 1);
+    const double width = (bump.last - bump.first + 1) * spacing;
     if (t < kEnds || t > 1 - kEnds) continue;
     if (width < options.nipple_narrowest_mm || width > options.nipple_widest_mm) continue;
     const double height = (outward[static_cast<std::size_t>(bump.peak)] - median) / sigma;
@@ -169,8 +192,8 @@ std::optional<Nipple> find_nipple(const Polyline& points, const SkinContourOptio
 
 SkinContour find_skin_contour(const Mask<2>& mask, const SkinContourOptions& options) {
   const Raster<2>& raster = mask.raster();
-  const int margin =
-      static_cast<int>(std::lround(options.frame_margin_mm / raster.spacing.minCoeff()));
+  const int margin = std::max(
+      1, static_cast<int>(std::lround(options.frame_margin_mm / raster.spacing.minCoeff())));
   const auto [width, height] = mask.size();
   const auto inside = [&, w = width, h = height](const cv::Point& p) {
     return p.x >= margin && p.y >= margin && p.x < w - margin && p.y < h - margin;
@@ -182,10 +205,11 @@ SkinContour find_skin_contour(const Mask<2>& mask, const SkinContourOptions& opt
                                ": the breast has no border within the film; check its "
                                "mask."));
   }
-  std::vector<cv::Point> skin = part(ring, run);
-  std::vector<cv::Point> rest =
-      part(ring, {(run.first + run.count) % ring.size(), ring.size() - run.count});
-  if (skin.front().y > skin.back().y) {
+  const bool outside_on_left = signed_area(as_points(ring)) < 0;
+  Polyline skin = on_border(as_points(part(ring, run)), outside_on_left);
+  Polyline rest =
+      as_points(part(ring, {(run.first + run.count) % ring.size(), ring.size() - run.count}));
+  if (skin.front().y() > skin.back().y()) {
     std::reverse(skin.begin(), skin.end());
     std::reverse(rest.begin(), rest.end());
   }

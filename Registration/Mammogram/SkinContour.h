@@ -19,6 +19,7 @@ struct SkinContourOptions {
   bool force = false;            ///< takes them all the same
   double nipple_knots_mm =
       2.5;  ///< distance of the knots of the finer curve that is searched for the nipple
+  double nipple_blur_mm = 1.5;     ///< Gaussian over that curve's curvature
   double nipple_narrowest_mm = 3;  ///< width of its bump of curvature at half height
   double nipple_widest_mm = 15;
   double nipple_deviations = 4;    ///< robust standard deviations by which it stands out

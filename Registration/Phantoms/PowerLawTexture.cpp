@@ -66,7 +66,7 @@ std::array<double, 4> cubic_weights(double t) {
 
 template <int Dim>
 PowerLawTexture<Dim>::PowerLawTexture(double period_mm, double exponent, double blur_mm,
-                                      Random random)
+                                      Random random, double lowest_frequency)
     : size_(1) {
   while (size_ < period_mm) size_ *= 2;
   const int n = size_;
@@ -83,7 +83,7 @@ PowerLawTexture<Dim>::PowerLawTexture(double period_mm, double exponent, double 
       prefilter *= 3 / (2 + std::cos(kTwoPi * f));
     }
     const Complex z(random.normal(), random.normal());
-    if (f2 == 0) continue;  // mean 0
+    if (f2 == 0 || f2 < lowest_frequency * lowest_frequency) continue;  // mean 0
     const double blur = kTwoPi * blur_mm;
     const double amplitude = std::pow(f2, -0.5 * exponent) * std::exp(-0.5 * blur * blur * f2);
     variance += amplitude * amplitude * std::norm(z) / 2;

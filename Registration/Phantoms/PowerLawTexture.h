@@ -19,7 +19,9 @@ class PowerLawTexture {
  public:
   /// @param period_mm  rounded up to a power of two.
   /// @param blur_mm    deviation of the Gaussian.
-  PowerLawTexture(double period_mm, double exponent, double blur_mm, Random random);
+  /// @param lowest_frequency  cycles per mm; there is nothing below.
+  PowerLawTexture(double period_mm, double exponent, double blur_mm, Random random,
+                  double lowest_frequency = 0);
 
   double operator()(const Point<Dim>& x) const;
 

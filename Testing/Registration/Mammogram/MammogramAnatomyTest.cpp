@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Registration/Phantoms/Random.h"
 #include "Testing/Registration/Mammogram/DrawnBreast.h"
 
 namespace crease {
@@ -144,6 +146,61 @@ TEST(MammogramAnatomy, ViewsThatDoNotFitAreSaid) {
   EXPECT_THAT([&] { check_views(fixed, longer); }, ThrowsMessage<InvalidInput>(::testing::AllOf(
                                                        HasSubstr("40 %"), HasSubstr("--force"))));
   EXPECT_THAT(check_views(fixed, longer, true), Contains(HasSubstr("40 %")));
+}
+
+/// Images that show no breast: every one is answered with a reason, or, where chance makes it look like one, with
+/// an anatomy; never with a crash or another kind of error.
+TEST(MammogramAnatomy, DamagedImagesAreAnsweredWithAReason) {
+  const DrawnBreast drawn = draw_breast();
+  const Raster<2> raster = drawn.image.raster();
+  const auto make = [&](const std::function<double(int, int)>& grey) {
+    Image<float, 2> image(raster);
+    for (int j = 0; j < raster.size[1]; ++j) {
+      for (int i = 0; i < raster.size[0]; ++i) image(i, j) = static_cast<float>(grey(i, j));
+    }
+    return image;
+  };
+  Random random(3, 1);
+  const std::vector<std::pair<const char*, Image<float, 2>>> images = {
+      {"noise", make([&](int, int) { return random.normal(); })},
+      {"slope", make([](int i, int j) { return i + 0.1 * j; })},
+      {"stripes", make([](int i, int) { return i / 40 % 2; })},
+      {"bars", make([](int, int j) { return j / 40 % 2; })},
+      {"one pixel", make([](int i, int j) { return i == 50 && j == 60; })},
+      {"one column", make([](int i, int) { return i == 0; })},
+      {"corner", make([](int i, int j) { return i + j < 60; })},
+      {"truncated", make([&](int i, int j) { return j < 200 ? drawn.image(i, j) : 0.0f; })},
+      {"halves", make([](int i, int) { return i < 280; })},
+      {"whole", make([](int i, int j) { return i > 0 && j > 0; })},
+      {"frame", make([](int i, int j) { return i < 30 || j < 30 || i > 530 || j > 670; })},
+      {"huge values", make([&](int i, int j) { return 1e30 * drawn.image(i, j); })},
+      {"tiny values", make([&](int i, int j) { return 1e-30 * drawn.image(i, j) - 1e-29; })},
+  };
+  for (const auto& [name, image] : images) {
+    MammogramOptions options;
+    options.name = name;
+    for (const bool force : {false, true}) {
+      options.force = force;
+      try {
+        const MammogramAnatomy anatomy = analyse_mammogram(image, options);
+        EXPECT_EQ(anatomy.skin.points.size(), 512u) << name;
+        EXPECT_GT(anatomy.breast.area_mm2, 0) << name;
+      } catch (const InvalidInput& error) {
+        EXPECT_THAT(error.what(), HasSubstr(name));
+      }
+    }
+  }
+}
+
+// Whole numbers or not, tiny or huge: only the order of the grey values counts.
+TEST(MammogramAnatomy, DoesNotDependOnTheUnitOfGrey) {
+  const DrawnBreast drawn = draw_breast();
+  const Mask<2> reference = analyse_mammogram(drawn.image).breast.mask;
+  for (const float unit : {1e-20f, 3.7f, 1e20f}) {
+    auto image = drawn.image;
+    for (float& v : image.values()) v = unit * (v - 2);
+    EXPECT_GE(testing::dice(analyse_mammogram(image).breast.mask, reference), 0.998) << unit;
+  }
 }
 
 TEST(MammogramAnatomy, FailuresNameTheFile) {

@@ -14,7 +14,8 @@ namespace {
 class Mias : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const std::filesystem::path folder = std::filesystem::path(CREASE_SHARED_DIR) / "mammograms";
+    const std::filesystem::path folder =
+        std::filesystem::path(CREASE_SHARED_DIR) / "data" / "mammograms";
     const auto film = folder / (std::string(GetParam()) + ".png");
     const auto mask = folder / (std::string(GetParam()) + "_breastmask.png");
     if (!std::filesystem::exists(film) || !std::filesystem::exists(mask)) {

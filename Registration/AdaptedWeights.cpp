@@ -4,16 +4,19 @@
 #include <cmath>
 #include <string_view>
 
+#include "Registration/SmoothingEnergy.h"
+
 namespace crease {
 namespace {
 
 constexpr int kMostBalancings = 6;   // coarser levels included
 constexpr int kMostStiffenings = 4;  // of a map that folds
 constexpr double kStiffening = 4;
-constexpr double kLeastBending = 1e-6;  // times the square of the mean edge
-constexpr double kMostBending = 1e-1;   // likewise
-constexpr double kLeastNoise = 1e-6;    // beside which soft landmarks are weighed
-constexpr double kMostFall = 32;        // of the weight of bending at once
+constexpr double kLeastBending =
+    1e-6;  // times the square of the mean edge; of an elastic body as it is
+constexpr double kMostBending = 1e-1;  // likewise
+constexpr double kLeastNoise = 1e-6;   // beside which soft landmarks are weighed
+constexpr double kMostFall = 32;       // of the weight of bending at once
 constexpr double kMostRise = 4;
 
 template <int Dim>
@@ -37,7 +40,7 @@ bool set_weight(WeightedEnergy<Dim>& energy, double weight, bool finest) {
 
 template <int Dim>
 bool AdaptedWeights<Dim>::stiffen(std::vector<WeightedEnergy<Dim>>& energies) {
-  WeightedEnergy<Dim>* bending = find(energies, "bending");
+  WeightedEnergy<Dim>* bending = smoothing_energy(energies);
   if (bending == nullptr || stiffened_ == kMostStiffenings) return false;
   ++stiffened_;
   bending->weight *= kStiffening;
@@ -47,7 +50,7 @@ bool AdaptedWeights<Dim>::stiffen(std::vector<WeightedEnergy<Dim>>& energies) {
 template <int Dim>
 bool AdaptedWeights<Dim>::balance(const BendingBalance& found, bool finest,
                                   std::vector<WeightedEnergy<Dim>>& energies) {
-  WeightedEnergy<Dim>* bending = find(energies, "bending");
+  WeightedEnergy<Dim>* bending = smoothing_energy(energies);
   if (bending == nullptr || stiffened_ > 0 || balanced_ == kMostBalancings) return false;
   ++balanced_;
   const double change = found.weight() / bending->weight;
@@ -55,7 +58,8 @@ bool AdaptedWeights<Dim>::balance(const BendingBalance& found, bool finest,
   // tells noise from misfit by itself and would not find the way back.
   const double most_rise = finest || !found.noise_power ? kMostRise : 1.0;
   const double wanted = bending->weight * std::clamp(change, 1 / kMostFall, most_rise);
-  const double unit = std::pow(edge_length_, 2);
+  // Bending counts second derivatives, an elastic body first ones.
+  const double unit = bending->name == kElasticName ? 1 : std::pow(edge_length_, 2);
   bool changed =
       set_weight(*bending, std::clamp(wanted, kLeastBending * unit, kMostBending * unit), finest);
   if (WeightedEnergy<Dim>* landmarks = find(energies, "landmarks")) {

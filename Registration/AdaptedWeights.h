@@ -7,7 +7,7 @@
 
 namespace crease {
 
-/// Weighs the energies named "bending" and "landmarks" (the soft ones) anew after each minimisation of a
+/// Weighs the energies named "bending" (or "elastic") and "landmarks" (the soft ones) anew after each minimisation of a
 /// registration's levels: by the noise and the roughness that it shows, and bending more where the finest
 /// map folds. Coarser levels choose for the next one; the finest one is minimised again while its weights
 /// still change much.

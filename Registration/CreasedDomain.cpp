@@ -31,7 +31,8 @@ void add_triangular_basis(const CreasedDomainOptions& options, CreasedDomain& do
       place_knots(domain.mesh, {.degree = options.degree,
                                 .smoothness = options.smoothness,
                                 .creases = options.creases,
-                                .collapse_inside_bodies = options.creases && options.rigid_bodies});
+                                .collapse_inside_bodies = options.creases && options.rigid_bodies,
+                                .collapse_all = options.collapse_knots});
   domain.plan = std::move(knots.plan);
   domain.basis = std::make_shared<const TriangularBSplineBasis<2>>(std::move(knots.net));
 }
@@ -116,21 +117,30 @@ LabelImage<2> body_labels(const CreasedDomain& domain, const Raster<2>& raster) 
 }
 
 template <int Dim>
-WeightField<Dim> label_weights(const LabelImage<Dim>& labels) {
+std::function<int(const Point<Dim>&)> region_of_label(const LabelImage<Dim>& labels) {
   const auto image = std::make_shared<const LabelImage<Dim>>(labels);
-  return [image](const Point<Dim>& x, int) {
+  return [image](const Point<Dim>& x) {
     const Raster<Dim>& raster = image->raster();
     const Vector<Dim> position = raster.index(x);
     typename LabelImage<Dim>::Index index;
     for (int a = 0; a < Dim; ++a) {
       const double nearest = std::round(position[a]);
-      if (!(nearest >= 0 && nearest < raster.size[a])) return 0.0;
+      if (!(nearest >= 0 && nearest < raster.size[a])) return 0;
       index[a] = static_cast<int>(nearest);
     }
-    return (*image)[index] > 0 ? 1.0 : 0.0;
+    return static_cast<int>((*image)[index]);
   };
 }
 
+template <int Dim>
+WeightField<Dim> label_weights(const LabelImage<Dim>& labels) {
+  return [region = region_of_label<Dim>(labels)](const Point<Dim>& x, int) {
+    return region(x) > 0 ? 1.0 : 0.0;
+  };
+}
+
+template std::function<int(const Point<2>&)> region_of_label<2>(const LabelImage<2>&);
+template std::function<int(const Point<3>&)> region_of_label<3>(const LabelImage<3>&);
 template WeightField<2> label_weights<2>(const LabelImage<2>&);
 template WeightField<3> label_weights<3>(const LabelImage<3>&);
 

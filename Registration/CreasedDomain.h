@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ struct CreasedDomainOptions {
   int degree = 3;
   int smoothness = -1;  ///< continuous derivatives away from creases; -1: degree - 1
   bool creases = true;  ///< false: lines stay edges of the mesh, the spline is smooth across them
+  /// All knots at their vertices (KnotOptions::collapse_all): Lagrange's finite elements, for comparisons.
+  bool collapse_knots = false;
   double edge_length = 0;  ///< away from lines; default a twelfth of the region's longer side
   /// Default half of edge_length: on phantoms of rigid bodies a quarter costs 40 to 90 % more triangles
   /// and changes no error by more than a tenth.
@@ -94,11 +97,18 @@ double default_bending_weight(const SplineBasis<Dim>& basis) {
   return 1e-3 * basis.mean_edge_length() * basis.mean_edge_length();
 }
 
+/// The label of the nearest pixel, 0 beyond the image: the region of a point for bases that know none
+/// themselves. The labels are copied.
+template <int Dim>
+std::function<int(const Point<Dim>&)> region_of_label(const LabelImage<Dim>& labels);
+
 /// 1 in the bodies of a label image (nearest pixel), 0 elsewhere and beyond it: for bases that know no
 /// bodies themselves. The labels are copied.
 template <int Dim>
 WeightField<Dim> label_weights(const LabelImage<Dim>& labels);
 
+extern template std::function<int(const Point<2>&)> region_of_label<2>(const LabelImage<2>&);
+extern template std::function<int(const Point<3>&)> region_of_label<3>(const LabelImage<3>&);
 extern template WeightField<2> label_weights<2>(const LabelImage<2>&);
 extern template WeightField<3> label_weights<3>(const LabelImage<3>&);
 

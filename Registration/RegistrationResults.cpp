@@ -4,6 +4,7 @@
 #include "Registration/DeterminedParameters.h"
 #include "Registration/FinerPlaces.h"
 #include "Registration/RegistrationRun.h"
+#include "Registration/SmoothingEnergy.h"
 #include "Registration/Unfolding.h"
 #include "Transforms/Energies/BendingEnergy.h"
 #include "Transforms/JacobianMap.h"
@@ -15,13 +16,15 @@ namespace crease {
 /// Whether the level is worth another minimisation, with other weights.
 template <int Dim>
 bool RegistrationRun<Dim>::renew_weights(std::size_t l, const LevelReport& level, const Phi& phi) {
-  if (!weights_ || !level.terms_after.contains("bending")) return false;
+  const WeightedEnergy<Dim>* smoothing = smoothing_energy(energies_);
+  if (!weights_ || smoothing == nullptr || !level.terms_after.contains(smoothing->name))
+    return false;
   const bool finest = l + 1 == num_levels_;
   if (finest && !parts_.schedule.require_invertible && folds(phi)) {
     return weights_->stiffen(energies_);
   }
   BendingBalance balance = image_noise(l, level.terms_after.at("image"), phi);
-  balance.bending_energy = level.terms_after.at("bending");
+  balance.bending_energy = level.terms_after.at(smoothing->name);
   return weights_->balance(balance, finest, energies_);
 }
 

@@ -1,10 +1,12 @@
 #include "Registration/RegistrationRun.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "Core/Error.h"
 #include "Registration/SamplesInside.h"
+#include "Registration/SmoothingEnergy.h"
 
 // The stages of a run, and what is made before the first minimisation.
 
@@ -123,7 +125,8 @@ std::unique_ptr<RegistrationObjective<Dim>> RegistrationRun<Dim>::objective(
     const Level& level) const {
   auto energies = energies_;
   for (auto& energy : energies) {
-    if (energy.name == "bending") energy.weight *= level.bending_factor;
+    if (energy.name == kBendingName) energy.weight *= level.bending_factor;
+    if (energy.name == kElasticName) energy.weight *= std::sqrt(level.bending_factor);
   }
   return std::make_unique<RegistrationObjective<Dim>>(pattern_, level.image, level.image_weight,
                                                       std::move(energies));

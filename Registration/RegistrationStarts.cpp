@@ -5,6 +5,7 @@
 #include "Metrics/TargetDisplacement.h"
 #include "Registration/OpticalFlow.h"
 #include "Registration/RegistrationRun.h"
+#include "Registration/SmoothingEnergy.h"
 #include "Registration/StartingPoint.h"
 
 // Where a run starts from.
@@ -49,7 +50,9 @@ typename RegistrationRun<Dim>::Phi RegistrationRun<Dim>::fitted_to_flow(
     const double pixel = compared_.front().fixed.raster().spacing.minCoeff();
     auto energies = energies_;
     for (auto& energy : energies) {
-      energy.weight = energy.name == "bending" ? 10 * std::pow(pixel, 4) : 100 * pixel * pixel;
+      energy.weight = energy.name == kBendingName   ? 10 * std::pow(pixel, 4)
+                      : energy.name == kElasticName ? 4 * pixel * pixel
+                                                    : 100 * pixel * pixel;
     }
     return StartingPoint<2>(pattern_, *null_space_, energies).fitted_to(fit, near);
   }

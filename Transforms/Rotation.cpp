@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
 
 namespace crease {
@@ -56,10 +57,20 @@ Matrix<3> rotated_by_angles<3>(const Matrix<3>& r, const RotationAngles<3>& w, c
 }
 
 template <int Dim>
+Matrix<Dim> nearest_rotation(const Matrix<Dim>& matrix) {
+  const Eigen::JacobiSVD<Matrix<Dim>> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix<Dim> u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(Dim - 1) *= -1;
+  return u * svd.matrixV().transpose();
+}
+
+template <int Dim>
 bool is_rotation(const Matrix<Dim>& matrix) {
   return matrix.isUnitary(1e-9) && matrix.determinant() > 0;
 }
 
+template Matrix<2> nearest_rotation<2>(const Matrix<2>&);
+template Matrix<3> nearest_rotation<3>(const Matrix<3>&);
 template bool is_rotation<2>(const Matrix<2>&);
 template bool is_rotation<3>(const Matrix<3>&);
 

@@ -21,6 +21,10 @@ template <int Dim>
 Eigen::Matrix<double, Dim, RotationAngles<Dim>::RowsAtCompileTime> rotated_by_angles(
     const Matrix<Dim>& rotation, const RotationAngles<Dim>& angles, const Vector<Dim>& v);
 
+/// The rotation R for which |R - matrix| is smallest.
+template <int Dim>
+Matrix<Dim> nearest_rotation(const Matrix<Dim>& matrix);
+
 /// Whether a matrix is a rotation, to 1e-9.
 template <int Dim>
 bool is_rotation(const Matrix<Dim>& matrix);

@@ -30,6 +30,9 @@ struct KnotOptions {
       false;  ///< one direction for all inner clouds: congruent triangles, congruent knots
   bool collapse_inside_bodies =
       false;  ///< vertices with one body all round: all knots at the vertex
+  /// All knots at their vertices: Lagrange's finite elements of this degree, continuous and no more, for
+  /// comparisons. Bending energies do not see their edges, which are hinges.
+  bool collapse_all = false;
 };
 
 /// What happened to a vertex.

@@ -276,7 +276,9 @@ CloudSketch VertexClouds::sketch(int vertex, std::vector<std::string>& warnings)
   }
   sketch.on_line = !at_vertex.empty();
   sketch.plan.radius = options_.alpha * smallest_inradius(vertex);
-  if (options_.collapse_inside_bodies && at_vertex.empty() && inside_one_body(vertex)) {
+  if (options_.collapse_all) {
+    collapse(sketch, VertexRule::kCollapsed);
+  } else if (options_.collapse_inside_bodies && at_vertex.empty() && inside_one_body(vertex)) {
     collapse(sketch, VertexRule::kInsideBody);
   } else if (topology_.on_border(vertex)) {
     set_border(vertex, at_vertex, sketch, warnings);

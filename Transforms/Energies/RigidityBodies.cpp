@@ -1,7 +1,5 @@
 // The bodies of the rigidity energy as wholes: their rotations, the Hessian of bodies that are nearly
 // rigid, and the quadratic stand-in.
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -9,17 +7,10 @@
 
 #include "Core/Parallel.h"
 #include "Transforms/Energies/RigidityEnergy.h"
+#include "Transforms/Rotation.h"
 
 namespace crease {
 namespace {
-
-template <int Dim>
-Matrix<Dim> nearest_rotation(const Matrix<Dim>& m) {
-  const Eigen::JacobiSVD<Matrix<Dim>> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix<Dim> u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(Dim - 1) *= -1;
-  return u * svd.matrixV().transpose();
-}
 
 /// Sums over a patch's cells: int w grad B_i dx and int w grad B_i grad B_k^T dx.
 template <int Dim>

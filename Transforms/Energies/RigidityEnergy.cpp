@@ -1,8 +1,6 @@
 #include "Transforms/Energies/RigidityEnergy.h"
 
 #include "Core/Error.h"
-#include "Core/Parallel.h"
-#include "Transforms/Energies/ScalarAssembly.h"
 
 namespace crease {
 namespace {
@@ -10,27 +8,18 @@ namespace {
 /// Root mean square of |E| up to which a body counts as nearly rigid.
 constexpr double kRigidStrain = 0.1;
 
-/// The weights at the element's points, null: 1.
+/// The weights at the element's points, none in bands that belong to no body.
 template <int Dim>
-Eigen::VectorXd weights_at_points(const QuadratureElement<Dim>& element,
-                                  const WeightField<Dim>& weights, WeightRange& range) {
-  Eigen::VectorXd w = Eigen::VectorXd::Ones(element.weights.size());
-  if (!weights) return w;
-  for (Eigen::Index q = 0; q < w.size(); ++q) w[q] = weights(element.points.col(q), element.region);
-  range.add(w.minCoeff<Eigen::PropagateNaN>(), w.maxCoeff<Eigen::PropagateNaN>());
-  return w;
-}
-
-/// Gradients of the functions at the points that carry weight, side by side: k x (Dim q).
-template <int Dim>
-Eigen::MatrixXd gathered_gradients(const QuadratureElement<Dim>& element,
-                                   const std::vector<Eigen::Index>& points) {
-  const auto q = std::ssize(points);
-  Eigen::MatrixXd all(element.gradients[0].rows(), Dim * q);
-  for (int a = 0; a < Dim; ++a) {
-    for (Eigen::Index n = 0; n < q; ++n) all.col(a * q + n) = element.gradients[a].col(points[n]);
+void set_weights(const QuadratureElement<Dim>& element, const WeightField<Dim>& weights,
+                 WeightRange& range, Eigen::VectorXd& w) {
+  if (element.in_two_sided_band) {
+    w.setZero();
+  } else if (weights) {
+    for (Eigen::Index q = 0; q < w.size(); ++q) {
+      w[q] = weights(element.points.col(q), element.region);
+    }
+    range.add(w.minCoeff<Eigen::PropagateNaN>(), w.maxCoeff<Eigen::PropagateNaN>());
   }
-  return all;
 }
 
 /// grad T at point p of a cell from the cell's Dim x (Dim q) table.
@@ -101,49 +90,20 @@ RigidityEnergy<Dim>::RigidityEnergy(const SplineBasis<Dim>& basis, const WeightF
   const auto wanted = [&](int region, int patch) {
     return (!options.wanted || options.wanted(region, patch)) && !weights.is_constant(region, 0.0);
   };
-  visit_quadrature<Dim>(basis, degree, 1, wanted,
-                        [&](auto& elements) { add_cells(elements, weights, range); });
+  patches_ = gradient_patches<Dim>(basis, degree, wanted,
+                                   [&](const QuadratureElement<Dim>& element, Eigen::VectorXd& w) {
+                                     set_weights(element, weights, range, w);
+                                   });
   range.check("RigidityEnergy");
+  for (const Patch& patch : patches_) {
+    for (const Cell& cell : patch.cells) weighted_measure_ += cell.weights.sum();
+  }
   make_bodies();
 }
 
 template <int Dim>
-void RigidityEnergy<Dim>::add_cells(const std::vector<QuadratureElement<Dim>>& elements,
-                                    const WeightField<Dim>& weights, WeightRange& range) {
-  std::shared_ptr<const Eigen::MatrixXd> last;
-  for (const PatchRange& group : group_by_patch(elements)) {
-    Patch patch;
-    patch.control_points = group.control_points;
-    patch.region = elements[group.begin].region;
-    for (std::size_t e = group.begin; e < group.end; ++e) {
-      const auto& element = elements[e];
-      if (element.in_two_sided_band) continue;
-      const Eigen::VectorXd w = weights_at_points(element, weights, range);
-      std::vector<Eigen::Index> points;
-      for (Eigen::Index q = 0; q < w.size(); ++q) {
-        if (w[q] != 0) points.push_back(q);
-      }
-      if (points.empty()) continue;
-      Cell cell;
-      cell.positions = group.positions(element.control_points);
-      cell.weights = element.weights.cwiseProduct(w)(points);
-      weighted_measure_ += cell.weights.sum();
-      auto gradients = gathered_gradients(element, points);
-      // The spans of a lattice share one table.
-      if (!last || last->rows() != gradients.rows() || last->cols() != gradients.cols() ||
-          *last != gradients) {
-        last = std::make_shared<const Eigen::MatrixXd>(std::move(gradients));
-      }
-      cell.gradients = last;
-      patch.cells.push_back(std::move(cell));
-    }
-    if (!patch.cells.empty()) patches_.push_back(std::move(patch));
-  }
-}
-
-template <int Dim>
 void RigidityEnergy<Dim>::add_cell(const Cell& cell, const ControlPoints<Dim>& phi,
-                                   bool with_gradient, bool with_hessian, PatchSums& sums) const {
+                                   bool with_gradient, bool with_hessian, Sums& sums) const {
   const Eigen::MatrixXd& gradients = *cell.gradients;
   const Eigen::Index q = cell.weights.size();
   ControlPoints<Dim> table(Dim, Dim * q);  // grad T
@@ -169,7 +129,7 @@ void RigidityEnergy<Dim>::add_cell(const Cell& cell, const ControlPoints<Dim>& p
 
 template <int Dim>
 void RigidityEnergy<Dim>::add_hessian(const Cell& cell, const ControlPoints<Dim>& table,
-                                      PatchSums& sums) const {
+                                      Sums& sums) const {
   const Eigen::MatrixXd& gradients = *cell.gradients;
   const Eigen::Index k = gradients.rows();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(Dim * k, Dim * k);
@@ -193,13 +153,11 @@ void RigidityEnergy<Dim>::add_hessian(const Cell& cell, const ControlPoints<Dim>
 }
 
 template <int Dim>
-typename RigidityEnergy<Dim>::PatchSums RigidityEnergy<Dim>::evaluate_patch(
-    const Patch& patch, const Eigen::Ref<const ControlPoints<Dim>>& phi, bool with_gradient,
-    bool with_hessian) const {
-  const auto m = std::ssize(patch.control_points);
-  PatchSums sums;
-  if (with_gradient) sums.gradient.setZero(Dim, m);
-  if (with_hessian) sums.hessian.setZero(Dim * m, Dim * m);
+PatchSums<Dim> RigidityEnergy<Dim>::evaluate_patch(const Patch& patch,
+                                                   const Eigen::Ref<const ControlPoints<Dim>>& phi,
+                                                   bool with_gradient, bool with_hessian) const {
+  Sums sums;
+  sums.resize(patch, with_gradient, with_hessian);
   const ControlPoints<Dim> local = phi(Eigen::all, patch.control_points);
   for (const Cell& cell : patch.cells) add_cell(cell, local, with_gradient, with_hessian, sums);
   return sums;
@@ -213,22 +171,20 @@ double RigidityEnergy<Dim>::evaluate(const Eigen::Ref<const ControlPoints<Dim>>&
     throw InvalidInput(message("RigidityEnergy: ", phi.cols(), " control points given, ",
                                num_control_points_, " expected."));
   }
-  std::vector<PatchSums> sums(patches_.size());
-  parallel_for(std::ssize(sums), [&](std::int64_t p) {
-    sums[p] = evaluate_patch(patches_[p], phi, gradient != nullptr, false);
-  });
+  std::vector<double> energies;
   double energy = 0;
-  for (std::size_t p = 0; p < sums.size(); ++p) {
-    energy += sums[p].energy;
-    const auto& numbers = patches_[p].control_points;
-    for (std::size_t i = 0; gradient && i < numbers.size(); ++i) {
-      gradient->col(numbers[i]) += scale * sums[p].gradient.col(i);
-    }
-  }
+  add_in_order(
+      std::ssize(patches_),
+      [&](std::int64_t p) { return evaluate_patch(patches_[p], phi, gradient != nullptr, false); },
+      [&](std::int64_t p, const Sums& sums) {
+        energies.push_back(sums.energy);
+        energy += sums.energy;
+        if (gradient) add_gradient(patches_[p], sums, scale, *gradient);
+      });
   if (!hessian) return energy;
   for (const Body& body : bodies_) {
     double of_body = 0;
-    for (int p : body.patches) of_body += sums[p].energy;
+    for (int p : body.patches) of_body += energies[p];
     if (!exact_hessian_ && 2 * of_body <= kRigidStrain * kRigidStrain * body.measure) {
       add_rigid_hessian(body, rotation_of(body, phi), scale, *hessian);
     } else {
@@ -242,32 +198,12 @@ template <int Dim>
 void RigidityEnergy<Dim>::add_strained_hessian(const Body& body,
                                                const Eigen::Ref<const ControlPoints<Dim>>& phi,
                                                double scale, BlockHessian<Dim>& hessian) const {
-  constexpr std::size_t kChunk = 128;  // patches whose matrices wait to be added in order
-  for (std::size_t begin = 0; begin < body.patches.size(); begin += kChunk) {
-    std::vector<PatchSums> sums(std::min(kChunk, body.patches.size() - begin));
-    parallel_for(std::ssize(sums), [&](std::int64_t n) {
-      sums[n] = evaluate_patch(patches_[body.patches[begin + n]], phi, false, true);
-    });
-    for (std::size_t n = 0; n < sums.size(); ++n) {
-      add_patch_hessian(patches_[body.patches[begin + n]], sums[n], scale, hessian);
-    }
-  }
-}
-
-template <int Dim>
-void RigidityEnergy<Dim>::add_patch_hessian(const Patch& patch, const PatchSums& sums, double scale,
-                                            BlockHessian<Dim>& hessian) const {
-  const auto& numbers = patch.control_points;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      // Functions of one patch that share no cell do not couple.
-      const Matrix<Dim> block = sums.hessian.template block<Dim, Dim>(Dim * i, Dim * k);
-      if (!block.isZero(0)) hessian.add(numbers[i], numbers[k], scale * block);
-    }
-    const Matrix<Dim> lower = sums.hessian.template block<Dim, Dim>(Dim * i, Dim * i);
-    const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();
-    hessian.add(numbers[i], numbers[i], scale * diagonal);
-  }
+  add_in_order(
+      std::ssize(body.patches),
+      [&](std::int64_t n) { return evaluate_patch(patches_[body.patches[n]], phi, false, true); },
+      [&](std::int64_t n, const Sums& sums) {
+        crease::add_hessian(patches_[body.patches[n]], sums, scale, hessian);
+      });
 }
 
 template class RigidityEnergy<2>;

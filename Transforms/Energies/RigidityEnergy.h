@@ -2,6 +2,7 @@
 
 #include "Transforms/AffineMap.h"
 #include "Transforms/Energies/Energy.h"
+#include "Transforms/Energies/GradientCells.h"
 #include "Transforms/Energies/WeightField.h"
 #include "Transforms/Splines/SplineBasis.h"
 
@@ -57,17 +58,9 @@ class RigidityEnergy final : public Energy<Dim> {
                 ControlPoints<Dim>& pull) const override;
 
  private:
-  struct Cell {
-    std::vector<int> positions;  // of its control points among the patch's
-    std::shared_ptr<const Eigen::MatrixXd>
-        gradients;            // k x (Dim q): d/dx_0 at all points, d/dx_1, ..
-    Eigen::VectorXd weights;  // q, w included
-  };
-  struct Patch {
-    std::vector<int> control_points;
-    std::vector<Cell> cells;
-    int region = -1;
-  };
+  using Cell = GradientCell<Dim>;
+  using Patch = GradientPatch<Dim>;
+  using Sums = PatchSums<Dim>;
   /// Patches of one region; a patch of a basis without regions stands on its own.
   struct Body {
     /// Of two control points.
@@ -81,26 +74,17 @@ class RigidityEnergy final : public Energy<Dim> {
     ControlPoints<Dim> moments;       // int w grad B_i dx
     std::vector<Coupling> couplings;  // by i, then k
   };
-  struct PatchSums {
-    double energy = 0;
-    ControlPoints<Dim> gradient;
-    Eigen::MatrixXd hessian;  // lower triangle
-  };
-  void add_cells(const std::vector<QuadratureElement<Dim>>& elements,
-                 const WeightField<Dim>& weights, WeightRange& range);
   void add_cell(const Cell& cell, const ControlPoints<Dim>& phi, bool with_gradient,
-                bool with_hessian, PatchSums& sums) const;
-  void add_hessian(const Cell& cell, const ControlPoints<Dim>& table, PatchSums& sums) const;
-  PatchSums evaluate_patch(const Patch& patch, const Eigen::Ref<const ControlPoints<Dim>>& phi,
-                           bool with_gradient, bool with_hessian) const;
+                bool with_hessian, Sums& sums) const;
+  void add_hessian(const Cell& cell, const ControlPoints<Dim>& table, Sums& sums) const;
+  Sums evaluate_patch(const Patch& patch, const Eigen::Ref<const ControlPoints<Dim>>& phi,
+                      bool with_gradient, bool with_hessian) const;
   void make_bodies();
   Matrix<Dim> rotation_of(const Body& body, const Eigen::Ref<const ControlPoints<Dim>>& phi) const;
   void add_rigid_hessian(const Body& body, const Matrix<Dim>& rotation, double scale,
                          BlockHessian<Dim>& hessian) const;
   void add_strained_hessian(const Body& body, const Eigen::Ref<const ControlPoints<Dim>>& phi,
                             double scale, BlockHessian<Dim>& hessian) const;
-  void add_patch_hessian(const Patch& patch, const PatchSums& sums, double scale,
-                         BlockHessian<Dim>& hessian) const;
 
   Matrix<Dim> linear_;
   bool exact_hessian_;

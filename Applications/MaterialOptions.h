@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "Applications/Option.h"
+#include "Transforms/Energies/ElasticMaterial.h"
+
+namespace crease {
+
+/// What elastic tissue is made of, as it was typed.
+struct MaterialOptions {
+  std::vector<std::string> young, poisson;  ///< "E" of all tissue, "label=E" of one region
+  std::string material = "st-venant-kirchhoff";
+  std::string plane = "stress";
+  bool mean_dilatation = false;
+
+  bool any_given() const;
+};
+
+/// `--young`, `--poisson`, `--material`, `--plane` and `--mean-dilatation`.
+std::vector<Option> options_of(MaterialOptions& options);
+
+/// @throws UsageError naming the option and what cannot be read, or lies out of range.
+ElasticMaterial material_of(const MaterialOptions& options);
+
+}  // namespace crease

@@ -71,7 +71,7 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   report.end_stage("certificate");
   progress.report({.stage = "results", .fraction = 0.9});
   const ElasticImages images = make_images(input, outcome);
-  const Evaluation<2> evaluation = evaluate_outcome(input, images);
+  const Evaluation<2> evaluation = evaluate_outcome(images);
   const auto errors = target_errors(input, outcome);
   report.end_stage("results");
   write_results(output, options, input, outcome, images);

@@ -161,8 +161,9 @@ std::vector<Option> solver_options(ElasticCommandOptions& o) {
       {.name = "alpha-relative",
        .target = &o.alpha_relative,
        .placeholder = "C",
-       .help = "Weight of the images in the refinement, in units of what balances the traces of both "
-               "stiffness matrices (1e-4)",
+       .help =
+           "Weight of the images in the refinement, in units of what balances the traces of both "
+           "stiffness matrices (1e-4)",
        .minimum = 0,
        .open_minimum = true},
       {.name = "alpha",

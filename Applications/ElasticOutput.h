@@ -22,8 +22,8 @@ std::vector<FeatureLine> crease_lines(const CreasedDomain& domain);
 
 ElasticImages make_images(const ElasticInput& input, const ElasticOutcome& outcome);
 
-/// Folds and match of the images over the body.
-Evaluation<2> evaluate_outcome(const ElasticInput& input, const ElasticImages& images);
+/// Determinants and folds over the body.
+Evaluation<2> evaluate_outcome(const ElasticImages& images);
 
 /// Target errors over the body where the truth is known: without a map, after the pairs, after the refinement.
 struct TargetErrors {

@@ -88,13 +88,14 @@ class Nodes {
     cv::distanceTransform(unknown(), distance, labels, cv::DIST_L2, cv::DIST_MASK_5,
                           cv::DIST_LABEL_PIXEL);
     const auto* label = labels.ptr<int>();
-    std::vector<std::size_t> place(known_.values().size() + 1);
+    std::vector<std::int32_t> place(known_.values().size() + 1);
     for (std::size_t n = 0; n < known_.values().size(); ++n) {
-      if (known_.values()[n]) place[static_cast<std::size_t>(label[n])] = n;
+      if (known_.values()[n])
+        place[static_cast<std::size_t>(label[n])] = static_cast<std::int32_t>(n);
     }
     for (std::size_t n = 0; n < known_.values().size(); ++n) {
       if (known_.values()[n]) continue;
-      const std::size_t nearest = place[static_cast<std::size_t>(label[n])];
+      const auto nearest = static_cast<std::size_t>(place[static_cast<std::size_t>(label[n])]);
       for (auto& component : components_) component.values()[n] = component.values()[nearest];
     }
   }

@@ -30,16 +30,11 @@ class ElasticRun {
     deform_by(pairs, contour);
     const std::shared_ptr<const BoundGrid<2>> grid = domain_.basis->bind(fixed_.raster());
     add_time("binding");
-    ImageImprovement improvement(fixed_, moving_, mask_, grid);
-    result_.images_equal = improvement.equal();
-    result_.improvement_by_pairs = improvement.percent(*result_.deformation);
-    add_time("improvement");
+    measure(grid, result_.improvement_by_pairs);
     if (options_.refine && result_.failure.empty() && !cancelled_) {
       refine(pairs, contour, grid);
       add_time("refinement");
-      result_.improvement_by_images =
-          improvement.percent(*result_.deformation, result_.refinement->transform.get());
-      add_time("improvement");
+      measure(grid, result_.improvement_by_images);
     } else {
       result_.transform = result_.deformation;
     }
@@ -67,6 +62,15 @@ class ElasticRun {
         std::make_shared<SplineTransform<2>>(transform_of(deformation, result_.load));
     result_.warnings = result_.load.warnings;
     add_time("load steps");
+  }
+
+  /// The images are not kept in memory meanwhile.
+  void measure(const std::shared_ptr<const BoundGrid<2>>& grid, std::optional<double>& percent) {
+    const ImageImprovement improvement(fixed_, moving_, mask_, grid);
+    result_.images_equal = improvement.equal();
+    percent = improvement.percent(
+        *result_.deformation, result_.refinement ? result_.refinement->transform.get() : nullptr);
+    add_time("improvement");
   }
 
   void refine(const Landmarks<2>& pairs, const std::vector<int>& contour,

@@ -48,7 +48,8 @@ TEST_F(ElasticBadInput, RegionsWithoutLabels) {
   Raster<2> raster;
   raster.size = {8, 8};
   write_image(folder / "empty.mha", LabelImage<2>(raster), PixelType::kUint8);
-  expect_refused(run({"--regions", (folder / "empty.mha").string()}), 3, {"--regions", "no label above 0"});
+  expect_refused(run({"--regions", (folder / "empty.mha").string()}), 3,
+                 {"--regions", "no label above 0"});
 }
 
 TEST_F(ElasticBadInput, ImagesWithoutABreast) {

@@ -221,7 +221,7 @@ std::string summary_text(const ElasticStory& story, double seconds) {
                                story.evaluation.jacobian.minimum, story.evaluation.jacobian.maximum,
                                story.evaluation.jacobian.folded, story.evaluation.samples));
   line("invertible", certificate_text(story.certificate));
-  line("time", fmt::format("{:.2f} s, {} factorizations", seconds, registration.factorizations));
+  line("factorizations", fmt::format("{}, {:.2f} s", registration.factorizations, seconds));
   line("results", fmt::format("{0}; to look at it, open {0}/report.html", story.options.output));
   return text;
 }

@@ -30,6 +30,15 @@ DisplacementField<2> given_displacement(const ElasticInput& input,
   return given;
 }
 
+/// Determinants of the body alone: its continuation says nothing about tissue.
+Image<float, 2> body_determinants(const ElasticImages& images) {
+  Image<float, 2> determinants = images.determinants;
+  for (std::size_t n = 0; n < determinants.values().size(); ++n) {
+    if (images.domain.values()[n] == 0) determinants.values()[n] = kOutside;
+  }
+  return determinants;
+}
+
 /// The pairs as they were met, into the moving image as it is given.
 Landmarks<2> given_pairs(const ElasticInput& input, const Landmarks<2>& pairs) {
   Landmarks<2> given = pairs;
@@ -131,7 +140,7 @@ void write_pictures(const OutputFolder& output, const ElasticInput& input,
       {"warped", [&] { return image_picture(images.warped, "moving, warped to the fixed image"); }},
       {"checkerboard", [&] { return checkerboard_picture(fixed, images.warped, true); }},
       {"difference", [&] { return difference_picture(fixed, images.before, images.warped); }},
-      {"jacobian", [&] { return jacobian_picture(images.determinants); }},
+      {"jacobian", [&] { return jacobian_picture(body_determinants(images)); }},
       {"stiffness", [&] { return stiffness_picture(images.stiffness); }},
       {"mesh", [&] { return deformation_picture(input.moving.image, mesh); }},
       {"grid", [&] { return deformation_picture(input.moving.image, grid); }},

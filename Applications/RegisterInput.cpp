@@ -1,10 +1,9 @@
 #include "Applications/RegisterInput.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "Applications/ExitCode.h"
+#include "Applications/RegionInput.h"
 #include "Applications/TransformInput.h"
 #include "Images/RasterCheck.h"
 #include "Transforms/AffineEquivalent.h"
@@ -25,30 +24,6 @@ AffineMap<Dim> read_start(const std::string& file, RunReport& report) {
       "--init ", file,
       ": only a rigid or affine transform, a similarity, a shift or a chain of these can be the "
       "start, and this one bends space; warp the moving image with it first."));
-}
-
-RegionOfInterest read_region(const std::string& file, const Raster<2>& fixed, InputFiles& input,
-                             RunReport& report) {
-  RegionOfInterest region = [&] {
-    if (has_ending(file, ".csv")) {
-      report.add_input("roi", file);
-      return read_region_of_interest(file);
-    }
-    const Mask<2> mask = input.mask<2>("roi", file);
-    return region_of_mask(mask.raster(), mask.values());
-  }();
-  const double outside = share_outside(region, fixed);
-  if (outside >= 1) {
-    throw InvalidInput(
-        message("--roi ", file,
-                ": the region lies outside the fixed image; give its points in mm in "
-                "the fixed image's space."));
-  }
-  if (outside > 1e-6) {
-    report.add_warning(fmt::format("--roi {}: {:.1f} % of the region lie outside the fixed image.",
-                                   file, 100 * outside));
-  }
-  return region;
 }
 
 template <int Dim>

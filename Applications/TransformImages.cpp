@@ -1,24 +1,31 @@
 #include "Applications/TransformImages.h"
 
-#include <algorithm>
+#include <Eigen/LU>
 
-#include "Transforms/JacobianMap.h"
+#include "Core/Parallel.h"
+#include "Transforms/StrainMap.h"
 
 namespace crease {
 
 template <int Dim>
 TransformImages<Dim> transform_images(const Transform<Dim>& transform, const Raster<Dim>& raster) {
-  ControlPoints<Dim> displacement;
-  std::vector<double> strain;
-  const JacobianMap<Dim> map = jacobian_map(transform, raster, &displacement, &strain);
   TransformImages<Dim> images{DisplacementField<Dim>(raster), Image<float, Dim>(raster),
-                              Image<float, Dim>(raster), Mask<Dim>(raster, map.in_domain)};
-  for (Eigen::Index i = 0; i < displacement.cols(); ++i) {
-    images.displacement.values()[static_cast<std::size_t>(i)] = displacement.col(i);
-  }
-  const auto narrow = [](double value) { return static_cast<float>(value); };
-  std::ranges::transform(map.determinants, images.determinants.values().begin(), narrow);
-  std::ranges::transform(strain, images.strain.values().begin(), narrow);
+                              Image<float, Dim>(raster), Mask<Dim>(raster)};
+  const Vector<Dim> step = raster.index_to_point().col(0);
+  parallel_for(raster.num_rows(), [&](std::int64_t row) {
+    const Point<Dim> start = raster.row_start(row);
+    const auto displacement = images.displacement.row(row);
+    const auto determinants = images.determinants.row(row), strain = images.strain.row(row);
+    const auto domain = images.domain.row(row);
+    for (std::size_t i = 0; i < displacement.size(); ++i) {
+      const Point<Dim> x = start + static_cast<double>(i) * step;
+      const auto sample = transform.sample(x);
+      displacement[i] = sample.point - x;
+      determinants[i] = static_cast<float>(sample.jacobian.determinant());
+      strain[i] = static_cast<float>(strain_norm<Dim>(sample.jacobian));
+      domain[i] = sample.in_domain ? 1 : 0;
+    }
+  });
   return images;
 }
 

@@ -1,4 +1,5 @@
 #include "Applications/CommandLine.h"
+#include "Applications/Elastic.h"
 #include "Applications/Evaluate.h"
 #include "Applications/Info.h"
 #include "Applications/Phantom.h"
@@ -8,7 +9,7 @@
 
 int main(int argc, char** argv) {
   const std::vector<crease::Subcommand> subcommands = {
-      crease::register_subcommand(), crease::warp_subcommand(), crease::info_subcommand(),
-      crease::phantom_subcommand(), crease::evaluate_subcommand()};
+      crease::register_subcommand(), crease::elastic_subcommand(), crease::warp_subcommand(),
+      crease::info_subcommand(),     crease::phantom_subcommand(), crease::evaluate_subcommand()};
   return crease::run_command(argc, argv, subcommands, crease::version_text());
 }

@@ -7,7 +7,7 @@
 #       pictures, which comments name: <!-- picture: FILE WIDTH IN ... --> (see small_picture). A block
 #       marked ```sh fails ends with an error; its message is part of the output.
 #   Documentation/make-pictures.sh --check FOLDER [--build DIR] [PAGE ...]
-#       only runs them, in a new folder per page in FOLDER, on phantoms of 96 pixels (volumes: 32 voxels) and coarse meshes, and
+#       only runs them, in a new folder per page in FOLDER, on phantoms of 96 pixels (volumes: 32 voxels, mammograms: 256) and coarse meshes, and
 #       changes nothing.
 #
 # The target `guide` builds what this needs and calls it; the tests call it with --check.
@@ -45,6 +45,7 @@ small_crease='crease() {
   done
   case "$*" in
     phantom*--dimension*) arguments+=(--size 32) ;;
+    phantom*mammogram*) arguments+=(--size 256) ;;
     phantom*) arguments+=(--size 96) ;;
     *--mesh-size* | *--triangles* | *--transform\ *) ;;
     register*) arguments+=(--mesh-size 24) ;;

@@ -42,6 +42,18 @@ Matrix<Dim> CompositeTransform<Dim>::spatial_jacobian(const Point<Dim>& x) const
 }
 
 template <int Dim>
+typename Transform<Dim>::Sample CompositeTransform<Dim>::sample(const Point<Dim>& x) const {
+  typename Transform<Dim>::Sample all{x, Matrix<Dim>::Identity(), true};
+  for (const auto& part : parts_) {
+    const auto here = part->sample(all.point);
+    all.point = here.point;
+    all.jacobian = (here.jacobian * all.jacobian).eval();
+    all.in_domain = all.in_domain && here.in_domain;
+  }
+  return all;
+}
+
+template <int Dim>
 bool CompositeTransform<Dim>::in_domain(const Point<Dim>& x) const {
   Point<Dim> y = x;
   for (const auto& part : parts_) {

@@ -22,6 +22,7 @@ class CompositeTransform final : public Transform<Dim> {
   std::unique_ptr<Transform<Dim>> clone() const override;
   Point<Dim> map(const Point<Dim>& x) const override;
   Matrix<Dim> spatial_jacobian(const Point<Dim>& x) const override;
+  typename Transform<Dim>::Sample sample(const Point<Dim>& x) const override;
   /// Whether every part is within its own domain on the way.
   bool in_domain(const Point<Dim>& x) const override;
   Eigen::Index num_parameters() const override;

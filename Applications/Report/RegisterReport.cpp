@@ -9,6 +9,7 @@
 
 #include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
+#include "Applications/Report/ReportRun.h"
 
 namespace crease {
 namespace {
@@ -358,37 +359,6 @@ void add_bodies(const RegisterStory<Dim>& story, HtmlReport& report) {
   report.add_table(table);
 }
 
-template <int Dim>
-void add_run(const RegisterStory<Dim>& story, HtmlReport& report) {
-  const Json& result = story.result;
-  report.begin_section("run", "Run");
-  ReportTable inputs{.title = "Inputs", .columns = {"option", "file", "SHA-256"}};
-  for (const Json& input : result.at("inputs")) {
-    inputs.rows.push_back({"--" + input.at("option").get<std::string>(),
-                           input.at("file").get<std::string>(),
-                           input.at("sha256").get<std::string>()});
-  }
-  report.add_table(inputs);
-  report.add_code(
-      "Effective configuration (config.toml): crease register --config config.toml "
-      "repeats the run",
-      story.config);
-  ReportTable run{
-      .title = "Time and memory", .columns = {"what", "value"}, .numbers = {1}, .varies = true};
-  for (const auto& [stage, seconds] : result.at("timings_s").items()) {
-    run.rows.push_back({stage, fmt::format("{:.3f} s", seconds.template get<double>())});
-  }
-  run.rows.push_back(
-      {"peak memory",
-       fmt::format("{:.0f} MB", result.at("peak_memory_mb").template get<double>())});
-  run.rows.push_back({"threads", result.at("threads").dump()});
-  report.add_table(run);
-  ReportTable notes{.title = "Notes on the mesh", .columns = {"note"}};
-  for (const Json& note : result.at("notes")) notes.rows.push_back({note.get<std::string>()});
-  if (!notes.rows.empty()) report.add_table(notes);
-  report.add_text("Made by crease " + result.at("version").get<std::string>() + ".");
-}
-
 }  // namespace
 
 template <int Dim>
@@ -399,7 +369,7 @@ std::string register_report(const RegisterStory<Dim>& story, RegisterStacks<Dim>
   report.begin_section("landmarks", "Landmarks and bodies");
   add_landmarks(story, report);
   add_bodies(story, report);
-  add_run(story, report);
+  add_run_section(story.result, story.config, report);
   return report.html();
 }
 

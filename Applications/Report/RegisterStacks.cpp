@@ -97,20 +97,31 @@ std::string landmark_label(int number, int count) {
 }  // namespace
 
 template <int Dim>
-RegisterStacks<Dim>::RegisterStacks(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                                    const RegisterOutcome<Dim>& outcome,
-                                    const RegisterImages<Dim>& images)
-    : options_(options),
-      input_(input),
-      outcome_(outcome),
-      images_(images),
-      fixed_(input.fixed.image.raster(),
-             kLayers + 2 * static_cast<int>(images.further_warped.size())) {
-  if (!same_raster(fixed_.raster, input.moving.image.raster())) {
-    moving_.emplace(input.moving.image.raster(), kLayers);
+StackSources<Dim> stack_sources(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                const RegisterOutcome<Dim>& outcome,
+                                const RegisterImages<Dim>& images) {
+  StackSources<Dim> sources{
+      input.fixed.image,  input.moving.image, images.warped, images.before, images,
+      *outcome.transform, input.landmarks};
+  if (outcome.domain) sources.lines = outcome.domain->feature_lines;
+  sources.equal_intensities = options.expects_equal_intensities();
+  for (std::size_t c = 0; c < images.further_warped.size(); ++c) {
+    sources.channels.push_back(
+        {input.further_fixed[c].image, input.further_moving[c].image, images.further_warped[c]});
+  }
+  return sources;
+}
+
+template <int Dim>
+RegisterStacks<Dim>::RegisterStacks(StackSources<Dim> sources)
+    : sources_(std::move(sources)),
+      fixed_(sources_.fixed.raster(), kLayers + 2 * static_cast<int>(sources_.channels.size()) +
+                                          static_cast<int>(sources_.maps.size())) {
+  if (!same_raster(fixed_.raster, sources_.moving.raster())) {
+    moving_.emplace(sources_.moving.raster(), kLayers);
   }
   add_images();
-  if (options.expects_equal_intensities()) add_differences();
+  if (sources_.equal_intensities) add_differences();
   add_maps();
   add_outlines();
   add_deformation();
@@ -141,46 +152,51 @@ int RegisterStacks<Dim>::add_overlay(Stack& stack, const std::string& name,
 
 template <int Dim>
 void RegisterStacks<Dim>::add_images() {
-  const ReportScale fixed = window(input_.fixed.image);
-  const ReportScale moving =
-      options_.expects_equal_intensities() ? fixed : window(input_.moving.image);
-  greys_ = {add_layer(fixed_, "fixed", fixed, samples_of(input_.fixed.image)),
-            add_layer(fixed_, "warped", moving, samples_of(images_.warped)),
-            add_layer(fixed_, "moving, before", moving, samples_of(images_.before))};
-  for (std::size_t c = 0; c < images_.further_warped.size(); ++c) {
-    const std::string channel = fmt::format(", channel {}", c + 2);
-    const Image<float, Dim>& other = input_.further_fixed[c].image;
-    greys_.push_back(add_layer(fixed_, "fixed" + channel, window(other), samples_of(other)));
-    greys_.push_back(add_layer(fixed_, "warped" + channel, window(input_.further_moving[c].image),
-                               samples_of(images_.further_warped[c])));
+  const ReportScale fixed = window(sources_.fixed);
+  const ReportScale moving = sources_.equal_intensities ? fixed : window(sources_.moving);
+  greys_ = {add_layer(fixed_, "fixed", fixed, samples_of(sources_.fixed)),
+            add_layer(fixed_, "warped", moving, samples_of(sources_.warped)),
+            add_layer(fixed_, "moving, before", moving, samples_of(sources_.before))};
+  for (std::size_t c = 0; c < sources_.channels.size(); ++c) {
+    const std::string name = fmt::format(", channel {}", c + 2);
+    const auto& channel = sources_.channels[c];
+    greys_.push_back(
+        add_layer(fixed_, "fixed" + name, window(channel.fixed), samples_of(channel.fixed)));
+    greys_.push_back(
+        add_layer(fixed_, "warped" + name, window(channel.moving), samples_of(channel.warped)));
   }
 }
 
 template <int Dim>
 void RegisterStacks<Dim>::add_differences() {
-  const ReportScale scale =
-      report_scale(difference_scale(difference(images_.before, input_.fixed.image)),
-                   "difference of intensities");
+  const ReportScale scale = report_scale(
+      difference_scale(difference(sources_.before, sources_.fixed)), "difference of intensities");
   differences_ = {add_layer(fixed_, "before: moving \u2212 fixed", scale,
-                            difference_of(images_.before, input_.fixed.image)),
+                            difference_of(sources_.before, sources_.fixed)),
                   add_layer(fixed_, "after: warped \u2212 fixed", scale,
-                            difference_of(images_.warped, input_.fixed.image))};
+                            difference_of(sources_.warped, sources_.fixed))};
 }
 
 template <int Dim>
 void RegisterStacks<Dim>::add_maps() {
   ReportScale determinants = report_scale(
-      determinant_scale(summarize_determinants(within(images_.determinants, images_.domain))),
+      determinant_scale(
+          summarize_determinants(within(sources_.images.determinants, sources_.images.domain))),
       "det \u2207T, no unit: 1 keeps area");
   if (Dim == 3) determinants.label = "det \u2207T, no unit: 1 keeps volume";
   determinants.first = 2;
   determinants.special = "folded";
   determinants.special_colour = "#39ff14";
-  const ReportScale strain = report_scale(strain_scale(within(images_.strain, images_.domain)),
-                                          "|E|, no unit: 0 is rigid");
+  const ReportScale strain =
+      report_scale(strain_scale(within(sources_.images.strain, sources_.images.domain)),
+                   "|E|, no unit: 0 is rigid");
   maps_ = {add_layer(fixed_, "Jacobian determinant", determinants,
-                     samples_within(images_.domain, images_.determinants)),
-           add_layer(fixed_, "strain", strain, samples_within(images_.domain, images_.strain))};
+                     samples_within(sources_.images.domain, sources_.images.determinants)),
+           add_layer(fixed_, "strain", strain,
+                     samples_within(sources_.images.domain, sources_.images.strain))};
+  for (const auto& map : sources_.maps) {
+    maps_.push_back(add_layer(fixed_, map.name, map.scale, samples_of(map.image)));
+  }
   fixed_.shown.overlays.push_back(
       {"extreme places", ReportOverlay::Look::kPlace, empty_drawings(fixed_.planes)});
   places_overlay_ = static_cast<int>(fixed_.shown.overlays.size()) - 1;
@@ -192,7 +208,7 @@ void RegisterStacks<Dim>::find_places() {
   ReportOverlay& overlay = fixed_.shown.overlays[static_cast<std::size_t>(places_overlay_)];
   const auto add = [&](const Image<float, Dim>& image, bool largest, const char* what) {
     constexpr int kCount = 2;
-    for (const auto& extreme : extremes(image, images_.domain, largest, kCount)) {
+    for (const auto& extreme : extremes(image, sources_.images.domain, largest, kCount)) {
       const std::string number = std::to_string(places_.size() + 1);
       ReportPlace place{
           fmt::format("{}: {} {:.4g} at {}", number, what, extreme.value, text_of<Dim>(extreme.at)),
@@ -204,9 +220,9 @@ void RegisterStacks<Dim>::find_places() {
       add_mark(fixed_.planes, extreme.at, true, number, overlay);
     }
   };
-  add(images_.determinants, false, "small determinant");
-  add(images_.determinants, true, "large determinant");
-  add(images_.strain, true, "strain");
+  add(sources_.images.determinants, false, "small determinant");
+  add(sources_.images.determinants, true, "large determinant");
+  add(sources_.images.strain, true, "strain");
 }
 
 template <int Dim>
@@ -214,7 +230,7 @@ void RegisterStacks<Dim>::draw_features(const Stack& stack, const PointMap<Dim>&
                                         ReportOverlay& overlay) const {
   if constexpr (Dim == 2) {
     const Slice<2>& slice = stack.planes.slices(0).front();
-    for (const FeatureLine& line : outcome_.domain->feature_lines) {
+    for (const FeatureLine& line : sources_.lines) {
       for (auto& part : mapped_line(slice, stack.raster, map, closed_points(line))) {
         overlay.drawing(0, 0).lines.push_back(std::move(part));
       }
@@ -224,19 +240,19 @@ void RegisterStacks<Dim>::draw_features(const Stack& stack, const PointMap<Dim>&
 
 template <int Dim>
 void RegisterStacks<Dim>::add_outlines() {
-  if (outcome_.domain && !outcome_.domain->feature_lines.empty()) {
+  if (!sources_.lines.empty()) {
     outlines_.push_back(
         add_overlay(fixed_, "feature lines", ReportOverlay::Look::kFeature, [this](auto& overlay) {
           draw_features(
               fixed_, [](const Point<Dim>& x) { return x; }, overlay);
         }));
   }
-  if (!input_.landmarks.empty()) {
+  if (!sources_.landmarks.empty()) {
     landmarks_.push_back(
         add_overlay(fixed_, "landmarks", ReportOverlay::Look::kLandmark, [this](auto& overlay) {
-          for (int j = 0; j < input_.landmarks.size(); ++j) {
-            add_mark(fixed_.planes, input_.landmarks.fixed[static_cast<std::size_t>(j)], false,
-                     landmark_label(j, input_.landmarks.size()), overlay);
+          for (int j = 0; j < sources_.landmarks.size(); ++j) {
+            add_mark(fixed_.planes, sources_.landmarks.fixed[static_cast<std::size_t>(j)], false,
+                     landmark_label(j, sources_.landmarks.size()), overlay);
           }
         }));
   }
@@ -246,7 +262,7 @@ template <int Dim>
 void RegisterStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) const {
   constexpr int kLines = Dim == 2 ? 32 : 20;
   const Raster<Dim>& fixed = fixed_.raster;
-  const PointMap<Dim> map = displacement_map(images_.displacement);
+  const PointMap<Dim> map = displacement_map(sources_.images.displacement);
   for (int p = 0; p < stack.planes.num_planes(); ++p) {
     const auto& slices = stack.planes.slices(p);
     for (std::size_t s = 0; s < slices.size(); ++s) {
@@ -269,18 +285,18 @@ void RegisterStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) 
 template <int Dim>
 void RegisterStacks<Dim>::add_deformation() {
   Stack& stack = moving_ ? *moving_ : fixed_;
-  deformed_layer_ = moving_ ? add_layer(stack, "moving", window(input_.moving.image),
-                                        samples_of(input_.moving.image))
-                            : greys_[2];
+  deformed_layer_ =
+      moving_ ? add_layer(stack, "moving", window(sources_.moving), samples_of(sources_.moving))
+              : greys_[2];
   deformed_overlays_ = {add_overlay(stack, "deformed grid", ReportOverlay::Look::kGrid,
                                     [this, &stack](auto& overlay) { draw_grid(stack, overlay); })};
-  const PointMap<Dim> map = [this](const Point<Dim>& x) { return outcome_.transform->map(x); };
-  if (outcome_.domain && !outcome_.domain->feature_lines.empty()) {
+  const PointMap<Dim> map = [this](const Point<Dim>& x) { return sources_.transform.map(x); };
+  if (!sources_.lines.empty()) {
     deformed_overlays_.push_back(
         add_overlay(stack, "feature lines", ReportOverlay::Look::kFeature,
                     [this, &stack, map](auto& overlay) { draw_features(stack, map, overlay); }));
   }
-  if (input_.landmarks.empty()) return;
+  if (sources_.landmarks.empty()) return;
   deformed_overlays_.push_back(
       add_overlay(stack, "landmarks (ring: given, cross: mapped)", ReportOverlay::Look::kLandmark,
                   [this, &stack](auto& overlay) { draw_landmarks(stack, overlay); }));
@@ -289,7 +305,7 @@ void RegisterStacks<Dim>::add_deformation() {
 /// Where T carries a fixed landmark is drawn in the slice of its partner.
 template <int Dim>
 void RegisterStacks<Dim>::draw_landmarks(const Stack& stack, ReportOverlay& overlay) const {
-  const Landmarks<Dim>& landmarks = input_.landmarks;
+  const Landmarks<Dim>& landmarks = sources_.landmarks;
   for (int p = 0; p < stack.planes.num_planes(); ++p) {
     for (int j = 0; j < landmarks.size(); ++j) {
       const auto n = static_cast<std::size_t>(j);
@@ -297,7 +313,7 @@ void RegisterStacks<Dim>::draw_landmarks(const Stack& stack, ReportOverlay& over
       if (!given) continue;
       auto& marks = overlay.drawing(p, given->slice).marks;
       marks.push_back({given->pixel, true, landmark_label(j, landmarks.size())});
-      const auto mapped = stack.planes.spot(p, outcome_.transform->map(landmarks.fixed[n]));
+      const auto mapped = stack.planes.spot(p, sources_.transform.map(landmarks.fixed[n]));
       if (mapped) marks.push_back({mapped->pixel, false, ""});
     }
   }
@@ -358,6 +374,10 @@ void RegisterStacks<Dim>::add_to(HtmlReport& report) {
                "map folds. |E|: size of the Green strain \u00bd(\u2207T\u1d40\u2207T \u2212 1)."});
 }
 
+template StackSources<2> stack_sources<2>(const RegisterOptions&, const RegisterInput<2>&,
+                                          const RegisterOutcome<2>&, const RegisterImages<2>&);
+template StackSources<3> stack_sources<3>(const RegisterOptions&, const RegisterInput<3>&,
+                                          const RegisterOutcome<3>&, const RegisterImages<3>&);
 template class RegisterStacks<2>;
 template class RegisterStacks<3>;
 

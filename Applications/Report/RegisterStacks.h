@@ -10,16 +10,48 @@
 
 namespace crease {
 
+/// What the pixels of a registration's report are made of: all of it must stay alive.
+template <int Dim>
+struct StackSources {
+  /// A further pair of images.
+  struct Channel {
+    const Image<float, Dim>& fixed;
+    const Image<float, Dim>& moving;
+    const Image<float, Dim>& warped;
+  };
+  /// A further map beside determinants and strain, on the fixed raster; NaN: no value.
+  struct Map {
+    std::string name;
+    const Image<float, Dim>& image;
+    ReportScale scale;
+  };
+  const Image<float, Dim>& fixed;
+  const Image<float, Dim>& moving;
+  const Image<float, Dim>& warped;     ///< moving(T(x)) on the fixed raster
+  const Image<float, Dim>& before;     ///< moving(x)
+  const TransformImages<Dim>& images;  ///< of T
+  const Transform<Dim>& transform;     ///< T, into the moving image
+  const Landmarks<Dim>& landmarks;
+  std::vector<FeatureLine> lines = {};  ///< 2D
+  bool equal_intensities = true;        ///< the difference of both images says something
+  std::vector<Channel> channels = {};
+  std::vector<Map> maps = {};
+};
+
+/// Those of `crease register`.
+template <int Dim>
+StackSources<Dim> stack_sources(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                const RegisterOutcome<Dim>& outcome,
+                                const RegisterImages<Dim>& images);
+
 /// The pixels of a registration's report: fixed, moving and warped image, their differences, determinants
 /// and strain on the fixed raster, and the grid that T deforms over the moving image.
 ///
-/// They are made by jobs, which depend on nothing but what is passed in (that must stay alive) and may run in
-/// parallel with others.
+/// They are made by jobs, which depend on nothing but what is passed in and may run in parallel with others.
 template <int Dim>
 class RegisterStacks {
  public:
-  RegisterStacks(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                 const RegisterOutcome<Dim>& outcome, const RegisterImages<Dim>& images);
+  explicit RegisterStacks(StackSources<Dim> sources);
   RegisterStacks(const RegisterStacks&) = delete;
   RegisterStacks& operator=(const RegisterStacks&) = delete;
 
@@ -57,10 +89,7 @@ class RegisterStacks {
   void draw_landmarks(const Stack& stack, ReportOverlay& overlay) const;
   void draw_features(const Stack& stack, const PointMap<Dim>& map, ReportOverlay& overlay) const;
 
-  const RegisterOptions& options_;
-  const RegisterInput<Dim>& input_;
-  const RegisterOutcome<Dim>& outcome_;
-  const RegisterImages<Dim>& images_;
+  const StackSources<Dim> sources_;
   Stack fixed_;
   std::optional<Stack> moving_;  // where the moving image lies on a raster of its own
   std::vector<int> greys_, differences_, maps_;  // layers of the fixed stack
@@ -72,6 +101,12 @@ class RegisterStacks {
   std::vector<std::function<void()>> jobs_;
 };
 
+extern template StackSources<2> stack_sources<2>(const RegisterOptions&, const RegisterInput<2>&,
+                                                 const RegisterOutcome<2>&,
+                                                 const RegisterImages<2>&);
+extern template StackSources<3> stack_sources<3>(const RegisterOptions&, const RegisterInput<3>&,
+                                                 const RegisterOutcome<3>&,
+                                                 const RegisterImages<3>&);
 extern template class RegisterStacks<2>;
 extern template class RegisterStacks<3>;
 

@@ -32,6 +32,23 @@ TEST(CompositeTransform, IsInItsDomainWhereEveryPartIs) {
   EXPECT_FALSE(transform.in_domain({2, 1}));
 }
 
+TEST(CompositeTransform, SamplesAtOnceWhatItTellsOneByOne) {
+  std::vector<std::unique_ptr<Transform<2>>> parts;
+  for (unsigned seed : {1u, 2u}) {
+    const auto basis = testing::box_basis<2>(4, 4.0);
+    auto part = std::make_unique<SplineTransform<2>>(basis);
+    part->set_control_points(testing::Numbers(seed).columns<2>(basis->num_control_points(), 0.4));
+    parts.push_back(std::move(part));
+  }
+  const CompositeTransform<2> transform(std::move(parts));
+  for (const Point<2>& x : {Point<2>(1.3, 2.2), Point<2>(3.97, 0.02), Point<2>(-1, 5)}) {
+    const auto sample = transform.sample(x);
+    EXPECT_EQ(sample.point, transform.map(x));
+    EXPECT_EQ(sample.jacobian, transform.spatial_jacobian(x));
+    EXPECT_EQ(sample.in_domain, transform.in_domain(x));
+  }
+}
+
 TEST(CompositeTransform, OfNothingIsTheIdentity) {
   const CompositeTransform<3> transform({});
   EXPECT_EQ(transform.map({1, 2, 3}), Point<3>(1, 2, 3));

@@ -6,6 +6,7 @@
 #include "Transforms/Energies/DirichletEnergy.h"
 #include "Transforms/Energies/FoldingEnergy.h"
 #include "Transforms/Energies/LandmarkEnergy.h"
+#include "Transforms/Energies/LinearElasticEnergy.h"
 #include "Transforms/Energies/RigidityEnergy.h"
 
 namespace crease {
@@ -35,6 +36,8 @@ std::vector<std::pair<std::string, std::shared_ptr<const Energy<Dim>>>> energies
   energies.emplace_back("bending", std::make_shared<BendingEnergy<Dim>>(basis, weights));
   energies.emplace_back("stretching", std::make_shared<DirichletEnergy<Dim>>(basis));
   energies.emplace_back("rigidity", std::make_shared<RigidityEnergy<Dim>>(basis, weights, affine));
+  energies.emplace_back("linear elasticity", std::make_shared<LinearElasticEnergy<Dim>>(
+                                                 basis, ElasticMaterial{.tissue = {2, 0.4}}));
   energies.emplace_back("folding", std::make_shared<FoldingEnergy<Dim>>(
                                        basis, affine, FoldingOptions{.threshold = 0.9}));
   return energies;

@@ -1,0 +1,184 @@
+#include "Applications/ElasticInput.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "Applications/ExitCode.h"
+#include "Applications/RegionInput.h"
+#include "Images/RasterCheck.h"
+#include "Registration/Elastic/BodyOutline.h"
+#include "Registration/Elastic/PairPlaces.h"
+#include "Registration/Mammogram/ContourPairs.h"
+#include "Transforms/Domains/FeatureLineFile.h"
+
+namespace crease {
+namespace {
+
+constexpr double kMuscleStiffness = 10;  // times that of the breast
+
+void check_dimension(const ElasticCommandOptions& options) {
+  if (InputFiles::common_dimension({options.fixed, options.moving}) == 2) return;
+  throw InvalidInput(message(options.fixed, " is 3D; crease elastic works on 2D images."));
+}
+
+/// The one line of --pectoral FILE.
+Polyline read_pectoral_line(const std::string& file, RunReport& report) {
+  const auto lines = read_feature_lines(file);
+  report.add_input("pectoral", file);
+  if (lines.size() != 1 || lines[0].closed) {
+    throw InvalidInput(message("--pectoral ", file,
+                               ": one open line is needed, from the breast's upper "
+                               "edge to the chest wall; the file has ",
+                               lines.size(), lines.size() == 1 ? " closed line." : " lines."));
+  }
+  return lines[0].points;
+}
+
+/// Looks for film, breast, skin line and muscle.
+MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const Image<float, 2>& image,
+                            const std::string& file, bool is_fixed, std::vector<std::string>& notes,
+                            RunReport& report) {
+  MammogramOptions wanted;
+  wanted.name = file;
+  wanted.threshold = options.threshold;
+  wanted.force = options.force;
+  if (!options.spacing.empty()) wanted.frame.pixel_size_mm = options.spacing[0];
+  if (options.pectoral_source() == "none") wanted.pectoral_search = PectoralSearch::kNone;
+  if (is_fixed && options.pectoral_is_file()) {
+    wanted.pectoral_line = read_pectoral_line(*options.pectoral, report);
+  }
+  MammogramAnatomy anatomy = analyse_mammogram(image, wanted);
+  for (const std::string& note : anatomy.notes) notes.push_back(file + ": " + note);
+  for (const std::string& warning : anatomy.warnings) report.add_warning(file + ": " + warning);
+  return anatomy;
+}
+
+void look_at_mammograms(const ElasticCommandOptions& options, ElasticInput& input,
+                        RunReport& report) {
+  input.fixed_anatomy =
+      anatomy_of(options, input.fixed.image, options.fixed, true, input.notes, report);
+  input.moving_anatomy =
+      anatomy_of(options, input.moving.image, options.moving, false, input.notes, report);
+  MammogramAnatomy &fixed = *input.fixed_anatomy, &moving = *input.moving_anatomy;
+  input.mirrored = options.mirror == "yes" ||
+                   (options.mirror == "auto" && fixed.breast.side != moving.breast.side);
+  if (input.mirrored) moving = mirrored(moving);
+  input.to_given = moving.to_given();
+  report.add_warnings(check_views(fixed, moving, options.force));
+  input.fixed.image = upright_image(std::move(input.fixed.image), fixed.frame);
+  input.moving.image = upright_image(std::move(input.moving.image), moving.frame);
+  input.moving_region = RegionOfInterest({moving.region});
+}
+
+/// Where the muscle lies: the upper corner at the chest wall, as the picture is seen.
+Point<2> chest_corner(const MammogramAnatomy& anatomy) {
+  const Raster<2>& frame = anatomy.frame.image.raster();
+  const double column = anatomy.breast.side == ChestSide::kLeft ? 0 : frame.size[0] - 1;
+  return frame.point({column, 0});
+}
+
+void set_labels(const ElasticCommandOptions& options, const Raster<2>& given, ElasticInput& input,
+                InputFiles& files) {
+  if (!options.regions) return;
+  const Raster<2>& fixed = input.fixed.image.raster();
+  LabelImage<2> labels = files.labels<2>("regions", *options.regions);
+  // A file of the same pixels without a size of its own means the same places.
+  const bool same = same_raster(labels.raster(), given);
+  input.labels =
+      same ? LabelImage<2>(fixed, std::move(labels).take_values()) : on_raster(labels, fixed);
+  if (std::ranges::max(input.labels->values()) > 0) return;
+  throw InvalidInput(message("--regions ", *options.regions,
+                             ": no label above 0 lies in the fixed image; label tissues 1, 2, ... "
+                             "in its space."));
+}
+
+void set_muscle(const ElasticCommandOptions& options, ElasticInput& input, RunReport& report) {
+  if (options.pectoral_source() == "none") return;
+  const auto& muscle = input.fixed_anatomy->pectoral;
+  if (!muscle) {
+    report.add_warning("no pectoral muscle was found: the breast is taken as homogeneous.");
+    return;
+  }
+  input.muscle_label = input.labels ? std::ranges::max(input.labels->values()) + 1 : 1;
+  input.lines.push_back(outline_beyond(muscle->line, input.region.bounds(),
+                                       chest_corner(*input.fixed_anatomy), input.muscle_label,
+                                       "pectoral line"));
+}
+
+void set_body(const ElasticCommandOptions& options, const Raster<2>& given, ElasticInput& input,
+              InputFiles& files, RunReport& report) {
+  const Raster<2>& fixed = input.fixed.image.raster();
+  if (options.roi == "auto") {
+    input.region = RegionOfInterest({input.fixed_anatomy->region});
+  } else if (options.roi == "image") {
+    input.region = rectangle_of(fixed);
+  } else {
+    input.region = read_region(options.roi, fixed, files, report);
+  }
+  set_labels(options, given, input, files);
+  set_muscle(options, input, report);
+}
+
+/// Given pairs first, then those along the skin.
+void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, RunReport& report) {
+  if (!options.pairs.empty()) {
+    input.pairs = options.pairs.size() == 2
+                      ? read_slicer_landmarks<2>(options.pairs[0], options.pairs[1])
+                      : read_landmarks<2>(options.pairs[0]);
+    for (const std::string& file : options.pairs) report.add_input("pairs", file);
+    // A reflection is its own inverse.
+    for (Point<2>& q : input.pairs.moving) q = input.to_given(q);
+    input.pairs.sigma_mm.clear();  // all are met exactly
+    if (input.moving_region) {
+      report.add_warnings(snap_moving_points(input.pairs, *input.moving_region));
+    }
+  }
+  if (options.num_contour_pairs() == 0) return;
+  ContourPairOptions wanted;
+  wanted.count = options.num_contour_pairs();
+  const ContourPairs found = contour_pairs(*input.fixed_anatomy, *input.moving_anatomy, wanted);
+  input.nipple_used = found.nipple_used;
+  const int first = input.pairs.size();
+  input.pairs.names.resize(static_cast<std::size_t>(first));
+  const auto append = [](auto& to, const auto& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  append(input.pairs.fixed, found.landmarks.fixed);
+  append(input.pairs.moving, found.landmarks.moving);
+  append(input.pairs.names, found.landmarks.names);
+  input.contour.resize(found.landmarks.fixed.size());
+  std::iota(input.contour.begin(), input.contour.end(), first);
+}
+
+}  // namespace
+
+ElasticInput::ElasticInput(ReadImage<2> fixed_image, ReadImage<2> moving_image)
+    : fixed(std::move(fixed_image)),
+      moving(std::move(moving_image)),
+      region(rectangle_of(fixed.image.raster())) {}
+
+ElasticBody ElasticInput::body(const MaterialOptions& material) const {
+  ElasticBody body{region, lines, labels ? &*labels : nullptr, material_of(material)};
+  if (has_muscle()) {
+    const ElasticTissue& breast = body.material.tissue;
+    body.material.regions.try_emplace(
+        muscle_label, ElasticTissue{kMuscleStiffness * breast.young, breast.poisson});
+  }
+  return body;
+}
+
+ElasticInput read_input(const ElasticCommandOptions& options, RunReport& report) {
+  check_dimension(options);
+  InputFiles files(report, options.spacing);
+  ReadImage<2> fixed = files.image<2>("fixed", options.fixed);
+  const Raster<2> given = fixed.image.raster();
+  ElasticInput input(std::move(fixed), files.image<2>("moving", options.moving));
+  if (options.needs_anatomy()) look_at_mammograms(options, input, report);
+  set_body(options, given, input, files, report);
+  set_pairs(options, input, report);
+  if (options.truth) input.truth = files.displacement<2>("truth", *options.truth);
+  files.check_spacing_was_used();
+  return input;
+}
+
+}  // namespace crease

@@ -1,0 +1,91 @@
+#include "Applications/ElasticRun.h"
+
+#include "Registration/Elastic/PairPlaces.h"
+#include "Transforms/AffineTransform.h"
+#include "Transforms/CompositeTransform.h"
+
+namespace crease {
+namespace {
+
+constexpr double kQuietSnap = 0.5;  // mm that a smooth contour may run outside the mesh
+
+MetricFactory<2> metric_of(const std::string& name) {
+  if (name == "mi") return mutual_information<2>();
+  if (name == "nmi") return mutual_information<2>({.kind = InformationKind::kNormalized});
+  if (name == "lncc") return local_ncc<2>();
+  return name == "ncc" ? ncc<2>() : ssd<2>();
+}
+
+ElasticDomainOptions domain_options(const ElasticCommandOptions& o) {
+  ElasticDomainOptions options;
+  options.degree = o.degree;
+  options.creases = !o.no_creases;
+  if (o.mesh_size) {
+    options.edge_length = *o.mesh_size;
+    options.num_triangles = 0;
+  } else if (o.triangles) {
+    options.num_triangles = *o.triangles;
+  }
+  return options;
+}
+
+ElasticRegistrationOptions registration_options(const ElasticCommandOptions& o) {
+  ElasticRegistrationOptions options;
+  if (o.steps == "adaptive") {
+    options.load.schedule = LoadSchedule::kAdaptive;
+  } else {
+    options.load.steps = o.num_steps();
+  }
+  if (o.corrector == "none") options.load.corrector = LoadCorrector::kNone;
+  options.refine = !o.no_refine;
+  options.pin_contour = o.pin == "contour";
+  ImageRefinementOptions& refinement = options.refinement;
+  refinement.metric = metric_of(o.metric);
+  if (o.alpha_relative) refinement.relative_weight = *o.alpha_relative;
+  refinement.weight = o.alpha;
+  refinement.levels = o.levels;
+  refinement.smoothing_mm = o.smoothing;
+  if (o.refinement == "damped") refinement.method = RefinementMethod::kDamped;
+  refinement.damped_step = o.damped_step;
+  return options;
+}
+
+/// The transform as the moving image is given.
+std::shared_ptr<const Transform<2>> given_transform(const ElasticInput& input,
+                                                    const ElasticRegistrationResult& found) {
+  if (!input.mirrored) return found.transform;
+  std::vector<std::unique_ptr<Transform<2>>> parts;
+  if (found.refinement) parts.push_back(found.refinement->transform->clone());
+  parts.push_back(found.deformation->clone());
+  parts.push_back(std::make_unique<AffineTransform<2>>(input.to_given));
+  return std::make_shared<CompositeTransform<2>>(std::move(parts));
+}
+
+}  // namespace
+
+ElasticOutcome run_elastic(const ElasticCommandOptions& options, const ElasticInput& input,
+                           RunReport& report, ProgressReporter& progress) {
+  progress.report({.stage = "domain"});
+  const ElasticBody body = input.body(options.material);
+  ElasticOutcome outcome;
+  outcome.material = body.material;
+  outcome.domain = make_elastic_domain(body, domain_options(options));
+  report.add_warnings(outcome.domain.warnings);
+  outcome.pairs = input.pairs;
+  if (!input.contour.empty()) place_on_border(outcome.pairs, *outcome.domain.basis, kQuietSnap);
+  report.add_warnings(
+      strange_pairs(outcome.pairs, outcome.domain.basis->bounds().size().minCoeff()));
+  report.end_stage("domain");
+  outcome.registration = register_elastically(input.fixed.image, input.moving.image, nullptr, body,
+                                              outcome.domain, outcome.pairs, input.contour,
+                                              registration_options(options), progress.callback());
+  for (const auto& [stage, seconds] : outcome.registration.timings_s) {
+    report.add_part(stage, seconds);
+  }
+  report.add_warnings(outcome.registration.warnings);
+  outcome.transform = given_transform(input, outcome.registration);
+  report.end_stage("registration");
+  return outcome;
+}
+
+}  // namespace crease

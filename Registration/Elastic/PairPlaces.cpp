@@ -1,0 +1,116 @@
+#include "Registration/Elastic/PairPlaces.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <limits>
+#include <numeric>
+
+#include "Core/Error.h"
+
+namespace crease {
+namespace {
+
+constexpr std::size_t kNeighbours = 5;
+
+std::string name_of(const Landmarks<2>& pairs, std::size_t i) {
+  const bool named = i < pairs.names.size() && !pairs.names[i].empty();
+  return named ? message("pair ", i + 1, " (", pairs.names[i], ")") : message("pair ", i + 1);
+}
+
+std::string fixed_text(double value) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << value;
+  return text.str();
+}
+
+std::string place(const Point<2>& p) {
+  return "(" + fixed_text(p.x()) + ", " + fixed_text(p.y()) + ") mm";
+}
+
+Point<2> nearest_on_rings(const RegionOfInterest& region, const Point<2>& p) {
+  Point<2> nearest = p;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Polyline& ring : region.rings()) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point<2> q = closest_point_on_segment(p, ring[i], ring[(i + 1) % ring.size()]);
+      if (const double distance = (q - p).norm(); distance < least) {
+        least = distance;
+        nearest = q;
+      }
+    }
+  }
+  return nearest;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The pairs whose fixed points are nearest to that of pair i.
+std::vector<std::size_t> neighbours_of(const Landmarks<2>& pairs, std::size_t i) {
+  std::vector<std::size_t> others(pairs.fixed.size());
+  std::iota(others.begin(), others.end(), 0);
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+  std::ranges::sort(others, {}, [&](std::size_t k) {
+    return std::pair((pairs.fixed[k] - pairs.fixed[i]).norm(), k);
+  });
+  others.resize(std::min(others.size(), kNeighbours));
+  return others;
+}
+
+}  // namespace
+
+void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double tolerance_mm) {
+  for (std::size_t i = 0; i < pairs.fixed.size(); ++i) {
+    if (basis.contains(pairs.fixed[i])) continue;
+    const Point<2> border = basis.nearest_point(pairs.fixed[i]);
+    const Vector<2> shift = border - pairs.fixed[i];
+    if (shift.norm() > tolerance_mm) continue;
+    pairs.fixed[i] = border;
+    pairs.moving[i] += shift;
+  }
+}
+
+std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfInterest& body,
+                                            double snap_mm) {
+  constexpr double kOnBorder = 1e-9;  // mm
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < pairs.moving.size(); ++i) {
+    Point<2>& q = pairs.moving[i];
+    if (body.contains(q)) continue;
+    const Point<2> border = nearest_on_rings(body, q);
+    const double distance = (border - q).norm();
+    if (distance < kOnBorder) continue;
+    const std::string what = message(name_of(pairs, i), ": the moving point ", place(q), " lies ",
+                                     fixed_text(distance), " mm outside the moving image's body");
+    if (distance > snap_mm) {
+      throw InvalidInput(what + "; correct it or leave the pair out.");
+    }
+    warnings.push_back(what + "; it was moved to the border.");
+    q = border;
+  }
+  return warnings;
+}
+
+std::vector<std::string> strange_pairs(const Landmarks<2>& pairs, double width_mm, double share) {
+  std::vector<std::string> warnings;
+  if (pairs.size() < 4) return warnings;
+  for (std::size_t i = 0; i < pairs.fixed.size(); ++i) {
+    const auto others = neighbours_of(pairs, i);
+    Vector<2> usual;
+    for (int a = 0; a < 2; ++a) {
+      std::vector<double> moved;
+      for (std::size_t k : others) moved.push_back((pairs.moving[k] - pairs.fixed[k])[a]);
+      usual[a] = median(std::move(moved));
+    }
+    const double unlike = (pairs.moving[i] - pairs.fixed[i] - usual).norm();
+    if (unlike <= share * width_mm) continue;
+    warnings.push_back(message(name_of(pairs, i), " at ", place(pairs.fixed[i]), " moves ",
+                               fixed_text(unlike), " mm unlike its neighbours; it may be wrong."));
+  }
+  return warnings;
+}
+
+}  // namespace crease

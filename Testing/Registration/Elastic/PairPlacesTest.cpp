@@ -1,0 +1,75 @@
+#include "Registration/Elastic/PairPlaces.h"
+
+#include <gmock/gmock.h>
+
+#include "Core/Error.h"
+#include "Testing/Transforms/SampleBases.h"
+
+namespace crease {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+const RegionOfInterest& body() {
+  static const RegionOfInterest square({{{0, 0}, {100, 0}, {100, 100}, {0, 100}}});
+  return square;
+}
+
+/// A lattice of pairs that all move by (3, 1) mm.
+Landmarks<2> shifted_pairs() {
+  Landmarks<2> pairs;
+  for (double y : {20.0, 50.0, 80.0}) {
+    for (double x : {20.0, 50.0, 80.0}) {
+      pairs.fixed.push_back({x, y});
+      pairs.moving.push_back({x + 3, y + 1});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+// The partner moves along: what is asked of the tissue is the same displacement.
+TEST(PlaceOnBorder, KeepsDisplacements) {
+  auto pairs = shifted_pairs();
+  pairs.fixed[0] = {-0.4, 40};
+  pairs.fixed[1] = {60, -3};
+  const auto basis = testing::triangles_over(body().bounds(), {.degree = 2}, 4);
+  auto placed = pairs;
+  place_on_border(placed, *basis, 0.5);
+  EXPECT_LT((placed.fixed[0] - Point<2>(0, 40)).norm(), 1e-9);
+  EXPECT_LT((placed.moving[0] - pairs.moving[0] - Vector<2>(0.4, 0)).norm(), 1e-9);
+  EXPECT_TRUE(basis->contains(placed.fixed[0]));
+  EXPECT_EQ(placed.fixed[1], pairs.fixed[1]);  // too far
+  EXPECT_EQ(placed.fixed[2], pairs.fixed[2]);
+}
+
+TEST(SnapMovingPoints, MovesThoseJustOutsideAndRefusesOthers) {
+  auto pairs = shifted_pairs();
+  EXPECT_THAT(snap_moving_points(pairs, body()), IsEmpty());
+  EXPECT_EQ(pairs.moving, shifted_pairs().moving);
+  pairs.moving[3] = {-1.5, 50};
+  const auto warnings = snap_moving_points(pairs, body());
+  ASSERT_EQ(warnings.size(), 1);
+  EXPECT_THAT(warnings[0], HasSubstr("pair 4: the moving point (-1.50, 50.00) mm lies 1.50 mm"));
+  EXPECT_LT((pairs.moving[3] - Point<2>(0, 50)).norm(), 1e-12);
+  pairs.names.assign(9, "");
+  pairs.names[8] = "nipple";
+  pairs.moving[8] = {110, 80};
+  EXPECT_THAT([&] { snap_moving_points(pairs, body()); },
+              ThrowsMessage<InvalidInput>(HasSubstr("pair 9 (nipple)")));
+}
+
+TEST(StrangePairs, AreThoseUnlikeTheirNeighbours) {
+  auto pairs = shifted_pairs();
+  EXPECT_THAT(strange_pairs(pairs, 100), IsEmpty());
+  pairs.moving[5] = {99, 99};
+  const auto warnings = strange_pairs(pairs, 100);
+  ASSERT_EQ(warnings.size(), 1);
+  EXPECT_THAT(warnings[0], HasSubstr("pair 6 at (80.00, 50.00) mm"));
+  EXPECT_THAT(strange_pairs(pairs, 1000), IsEmpty());
+}
+
+}  // namespace crease

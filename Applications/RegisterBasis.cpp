@@ -31,7 +31,8 @@ RegisterBasis<2> basis_on_triangles(const RegisterOptions& options, const Regist
       input.labels ? make_creased_domain(region, *input.labels, input.feature_lines, wanted)
                    : make_creased_domain(region, input.feature_lines, wanted);
   if (finer.empty()) report.add_warnings(domain.warnings);
-  RegisterBasis<2> result{.basis = domain.basis, .domain = {}, .bodies = nullptr};
+  RegisterBasis<2> result{
+      .basis = domain.basis, .domain = {}, .bodies = nullptr, .region_at = nullptr};
   if (domain.has_bodies()) result.bodies = body_weights<2>();
   result.domain = std::move(domain);
   return result;
@@ -82,7 +83,10 @@ RegisterBasis<Dim> make_register_basis(const RegisterOptions& options,
   }
   RegisterBasis<Dim> result;
   result.basis = covering_basis(options, input.fixed.image.raster(), input.landmarks, finer);
-  if (input.labels) result.bodies = label_weights(*input.labels);
+  if (input.labels) {
+    result.bodies = label_weights(*input.labels);
+    result.region_at = region_of_label(*input.labels);
+  }
   return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,6 +19,8 @@ struct RegisterBasis {
   std::shared_ptr<const SplineBasis<Dim>> basis;
   std::optional<CreasedDomain> domain;  ///< of splines on triangles
   WeightField<Dim> bodies;              ///< null: no rigid bodies
+  /// Labels of points, for bases whose patches have none; null: none, or those of the patches.
+  std::function<int(const Point<Dim>&)> region_at;
 };
 
 /// Makes the basis that `--transform` and the options of the domain describe; warnings go to the report.

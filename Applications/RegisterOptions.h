@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "Applications/MaterialOptions.h"
 #include "Applications/Option.h"
 #include "Applications/RunOptions.h"
 
@@ -27,6 +28,8 @@ struct RegisterOptions {
   std::string landmarks_conflict = "error";
   std::vector<std::string> metric = {"ssd"};  ///< of all channels, or of each
   std::vector<double> channel_weights;        ///< empty: 1 each
+  std::string energy = "bending";
+  MaterialOptions material;  ///< of an elastic energy
   std::optional<std::string> fixed_mask, moving_mask;
   std::string interpolator = "cubic";
   double alpha = 1;
@@ -69,6 +72,8 @@ struct RegisterOptions {
   double rigidity_weight() const { return beta.value_or(1); }
   /// Whether bodies may be known, from labels or closed lines.
   bool may_have_bodies() const { return rigid_labels || feature_lines; }
+  /// Whether the motion is that of an elastic body, rather than one that resists bending.
+  bool is_elastic() const { return energy == "elastic"; }
   bool init_is_file() const;
 };
 

@@ -6,6 +6,7 @@
 #include "Applications/RegisterBasis.h"
 #include "Images/IntensityRange.h"
 #include "Images/Moments.h"
+#include "Registration/Elastic/ElasticRegularization.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/LandmarkFits.h"
 #include "Transforms/RigidTransform.h"
@@ -168,10 +169,18 @@ void add_spline(const RegisterOptions& options, const RegisterBasis<Dim>& basis,
                 Registration<Dim>& registration, std::map<std::string, double>& weights) {
   registration.basis(basis.basis);
   const bool rigid = basis.bodies && options.rigidity_weight() > 0;
-  weights["bending"] = options.gamma.value_or(default_bending_weight(*basis.basis));
-  if (weights["bending"] > 0) {
-    registration.energy("bending", weights["bending"],
-                        bending<Dim>(rigid ? basis.bodies : nullptr));
+  if (options.is_elastic()) {
+    weights["elastic"] = options.gamma.value_or(kDefaultElasticWeight);
+    if (weights["elastic"] > 0) {
+      registration.energy("elastic", weights["elastic"],
+                          elastic<Dim>(material_of(options.material), basis.region_at));
+    }
+  } else {
+    weights["bending"] = options.gamma.value_or(default_bending_weight(*basis.basis));
+    if (weights["bending"] > 0) {
+      registration.energy("bending", weights["bending"],
+                          bending<Dim>(rigid ? basis.bodies : nullptr));
+    }
   }
   if (rigid) {
     weights["rigidity"] = options.rigidity_weight();

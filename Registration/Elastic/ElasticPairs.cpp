@@ -110,8 +110,8 @@ std::vector<int> connected_parts(const SplineBasis<2>& basis) {
     return i;
   };
   for (const auto& [i, k] : basis.couplings()) {
-    const auto [low, high] = std::minmax({root(i), root(k)});
-    parent[high] = low;
+    const int a = root(i), b = root(k);
+    parent[std::max(a, b)] = std::min(a, b);
   }
   for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
   return parent;

@@ -3,15 +3,6 @@
 #include "Transforms/Energies/ElasticEnergy.h"
 
 namespace crease {
-namespace {
-
-/// A regulariser in space is integrated less exactly: a quartic energy of cubics takes five times as many points.
-template <int Dim>
-int regularization_degree(const SplineBasis<Dim>& basis) {
-  return Dim == 3 ? basis.product_degree(2, 1) : -1;
-}
-
-}  // namespace
 
 template <int Dim>
 EnergyFactory<Dim> elastic(const ElasticMaterial& material,
@@ -22,7 +13,8 @@ EnergyFactory<Dim> elastic(const ElasticMaterial& material,
   relative.tissue.young = 1;
   return [relative, region_at](const SplineBasis<Dim>& basis, const AffineMap<Dim>& affine) {
     ElasticOptions<Dim> options;
-    options.quadrature_degree = regularization_degree(basis);
+    // Exact for small strains: a regulariser need not be more, and all of a quartic energy takes several times as long.
+    options.quadrature_degree = basis.product_degree(2, 1);
     options.region_at = region_at;
     return std::make_shared<ElasticEnergy<Dim>>(basis, relative, affine, options);
   };

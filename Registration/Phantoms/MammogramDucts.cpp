@@ -164,6 +164,9 @@ std::vector<DuctMark> duct_marks(const std::vector<Duct>& ducts) {
       if (boxes[a].intersects(boxes[b])) add_crossings(ducts[a], ducts[b], marks);
     }
   }
+  for (DuctMark& mark : marks) {
+    for (double& angle : mark.angles_rad) angle = std::remainder(angle, 2 * kPi);
+  }
   return marks;
 }
 

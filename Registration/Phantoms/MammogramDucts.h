@@ -44,7 +44,7 @@ struct DuctMark {
   bool crossing = false;
   Point<2> position = Point<2>::Zero();
   /// Branches: direction from the fork back along the duct that comes from the nipple, then those of the two
-  /// it forks into. Crossings: directions of the two ducts. Radians.
+  /// it forks into. Crossings: directions of the two ducts. Radians, -pi to pi.
   std::vector<double> angles_rad;
 };
 

@@ -50,9 +50,25 @@ TEST_F(RegisterBadOptions, OptionsOutOfRange) {
           {"--landmarks-sigma", "above 0"});
 }
 
+TEST_F(RegisterBadOptions, ElasticTissue) {
+  const auto refused = [&](std::vector<std::string> extra, const std::vector<std::string>& texts) {
+    expect_refused(run(extra), 2, texts);
+  };
+  refused({"--energy", "elastc"}, {"--energy", "did you mean elastic?"});
+  refused({"--young", "5"}, {"--young", "add --energy elastic"});
+  refused({"--energy", "elastic", "--young", "-5"}, {"--young", "E = -5"});
+  refused({"--energy", "elastic", "--young", "stiff"}, {"--young", "\"stiff\" is not a number"});
+  refused({"--energy", "elastic", "--young", "1,bone=9"}, {"\"bone\" is not a region's label"});
+  refused({"--energy", "elastic", "--poisson", "0.5"}, {"--poisson", "(-1, 0.5)"});
+  refused({"--energy", "elastic", "--poisson", "0.4995", "--plane", "strain"}, {"plane strain"});
+  refused({"--energy", "elastic", "--young", "1,2=9"}, {"region 2", "--rigid-labels"});
+  refused({"--energy", "elastic", "--transform", "affine"}, {"--energy elastic", "affine"});
+  refused({"--energy", "elastic", "--adapt", "1"}, {"--adapt", "bending"});
+}
+
 // Nothing of a later version is silently accepted.
 TEST_F(RegisterBadOptions, OptionsOfLaterVersionsAreUnknown) {
-  for (const char* option : {"--orientations", "--slide-labels", "--energy"}) {
+  for (const char* option : {"--orientations", "--slide-labels"}) {
     expect_refused(run({option, "exact"}), 2,
                    {std::string("the option ") + option + " is unknown"});
   }

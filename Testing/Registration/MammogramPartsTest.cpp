@@ -135,10 +135,12 @@ TEST(Ducts, ForksPointAlongWhatIsDrawn) {
     if (mark.crossing) continue;
     ++branches;
     for (const double angle : mark.angles_rad) {
+      EXPECT_LE(std::abs(angle), kPi);
       EXPECT_GT(drawing.coverage(mark.position + step * direction(angle)), 0.5) << mark.name;
     }
-    const double between = 0.5 * (mark.angles_rad[1] + mark.angles_rad[2]);
-    clear += drawing.coverage(mark.position + 1.5 * step * direction(between)) < 0.5;
+    const Vector<2> between =
+        (direction(mark.angles_rad[1]) + direction(mark.angles_rad[2])).normalized();
+    clear += drawing.coverage(mark.position + 1.5 * step * between) < 0.5;
   }
   EXPECT_GE(branches, 20);
   EXPECT_GE(clear, 0.7 * branches);  // other ducts pass by

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "Core/Error.h"
-#include "Transforms/Rotation.h"
 
 namespace crease {
 namespace {
@@ -45,39 +45,22 @@ void check_regions(const ElasticMaterial& material, const std::set<int>& present
   }
 }
 
-/// kappa of the stand-in 1/2 int kappa |F - R|^2.
-template <int Dim>
-double stand_in_stiffness(const LameParameters& lame) {
-  return lame.mu + (lame.lambda + lame.mu) / Dim;
-}
-
-/// Weights times kappa at a cell's points.
-template <int Dim>
-Eigen::VectorXd stand_in_weights(const ElasticPatch<Dim>& patch, std::size_t c) {
-  Eigen::VectorXd weights = patch.cells.cells[c].weights;
-  const auto& lame = patch.lame[c];
-  for (Eigen::Index p = 0; p < weights.size(); ++p) {
-    weights[p] *= stand_in_stiffness<Dim>(lame[lame.size() == 1 ? 0 : p]);
-  }
-  return weights;
-}
-
-/// int w grad B_i dx over a patch, Dim x m, for weights given per cell.
-template <int Dim, typename Weights>
-ControlPoints<Dim> gradient_moments(const ElasticPatch<Dim>& patch, const Weights& weights_of) {
-  ControlPoints<Dim> moments =
-      ControlPoints<Dim>::Zero(Dim, std::ssize(patch.cells.control_points));
-  for (std::size_t c = 0; c < patch.cells.cells.size(); ++c) {
-    const GradientCell<Dim>& cell = patch.cells.cells[c];
-    const Eigen::VectorXd weights = weights_of(c);
-    for (int a = 0; a < Dim; ++a) {
-      const Eigen::VectorXd sums =
-          cell.gradients->middleCols(a * weights.size(), weights.size()) * weights;
-      moments.row(a)(cell.positions) += sums.transpose();
+/// Pads the tables, which many cells may share, to rows that vectorised loops like.
+class TablePadding {
+ public:
+  void pad(std::shared_ptr<const Eigen::MatrixXd>& table) {
+    auto& padded = padded_[table];
+    if (!padded) {
+      Eigen::MatrixXd wider = Eigen::MatrixXd::Zero((table->rows() + 3) / 4 * 4, table->cols());
+      wider.topRows(table->rows()) = *table;
+      padded = std::make_shared<const Eigen::MatrixXd>(std::move(wider));
     }
+    table = padded;
   }
-  return moments;
-}
+
+ private:
+  std::map<std::shared_ptr<const Eigen::MatrixXd>, std::shared_ptr<const Eigen::MatrixXd>> padded_;
+};
 
 /// Number of points at which two functions of a cell both have a gradient: a cell may be several small ones.
 template <int Dim>
@@ -121,9 +104,11 @@ void ElasticEnergy<Dim>::set_materials(std::vector<GradientPatch<Dim>> patches,
     largest_stiffness_ = std::max(largest_stiffness_, lame.lambda + 2 * lame.mu);
     return lame;
   };
+  TablePadding padding;
   for (GradientPatch<Dim>& cells : patches) {
     ElasticPatch<Dim> patch;
-    for (const GradientCell<Dim>& cell : cells.cells) {
+    for (GradientCell<Dim>& cell : cells.cells) {
+      padding.pad(cell.gradients);
       std::vector<LameParameters> lame;
       if (options.region_at) {
         for (Eigen::Index p = 0; p < cell.weights.size(); ++p) {
@@ -240,48 +225,6 @@ void ElasticEnergy<Dim>::add_patch_hessian(std::size_t p, const ElasticSums<Dim>
     const Matrix<Dim> diagonal = lower.template selfadjointView<Eigen::Lower>();
     hessian.block(*slot++) += scale * diagonal;
   }
-}
-
-template <int Dim>
-void ElasticEnergy<Dim>::add_stiffness(double scale, const HessianPattern& pattern,
-                                       std::span<double> stiffness) const {
-  for (const ElasticPatch<Dim>& patch : patches_) {
-    const auto& numbers = patch.cells.control_points;
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(std::ssize(numbers), std::ssize(numbers));
-    for (std::size_t c = 0; c < patch.cells.cells.size(); ++c) {
-      const GradientCell<Dim>& cell = patch.cells.cells[c];
-      const Eigen::VectorXd weights = stand_in_weights(patch, c);
-      const Eigen::MatrixXd& gradients = *cell.gradients;
-      const Eigen::MatrixXd square =
-          gradients * weights.replicate(Dim, 1).asDiagonal() * gradients.transpose();
-      sum(cell.positions, cell.positions) += square;
-    }
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      for (std::size_t k = 0; k <= i; ++k) {
-        if (sum(i, k) != 0) stiffness[pattern.slot(numbers[i], numbers[k])] += scale * sum(i, k);
-      }
-    }
-  }
-}
-
-template <int Dim>
-bool ElasticEnergy<Dim>::add_pull(const Eigen::Ref<const ControlPoints<Dim>>& phi0, double scale,
-                                  ControlPoints<Dim>& pull) const {
-  for (const ElasticPatch<Dim>& patch : patches_) {
-    const auto& numbers = patch.cells.control_points;
-    const ControlPoints<Dim> local = phi0(Eigen::all, numbers);
-    const ControlPoints<Dim> moments =
-        gradient_moments<Dim>(patch, [&](std::size_t c) { return patch.cells.cells[c].weights; });
-    const Matrix<Dim> turn =
-        nearest_rotation<Dim>(patch.measure * linear_ + local * moments.transpose()) - linear_;
-    const ControlPoints<Dim> pulls = turn * gradient_moments<Dim>(patch, [&](std::size_t c) {
-                                       return stand_in_weights(patch, c);
-                                     });
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      pull.col(numbers[i]) += scale * pulls.col(i);
-    }
-  }
-  return true;
 }
 
 template class ElasticEnergy<2>;

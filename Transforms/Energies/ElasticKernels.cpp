@@ -11,7 +11,6 @@ using Unaligned4 = double __attribute__((vector_size(32), aligned(8)));
 inline Real4 load(const double* p) { return *reinterpret_cast<const Unaligned4*>(p); }
 inline void store(double* p, Real4 v) { *reinterpret_cast<Unaligned4*>(p) = v; }
 inline Real4 splat(double v) { return Real4{v, v, v, v}; }
-inline double sum(Real4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 inline Real4 choose(Mask4 mask, Real4 yes, Real4 no) {
   return reinterpret_cast<Real4>((mask & reinterpret_cast<Mask4>(yes)) |
                                  (~mask & reinterpret_cast<Mask4>(no)));
@@ -194,29 +193,41 @@ inline void load_deformation(const ElasticCell& cell, int p, Real4* F) {
   for (int r = 0; r < kSize<Dim>; ++r) F[r] = load(cell.deformation + r * cell.stride + p);
 }
 
+/// The sums of four vectors' lanes.
+inline Real4 sums(Real4 t0, Real4 t1, Real4 t2, Real4 t3) {
+  const Real4 u =
+      __builtin_shuffle(t0, t1, Mask4{0, 4, 2, 6}) + __builtin_shuffle(t0, t1, Mask4{1, 5, 3, 7});
+  const Real4 v =
+      __builtin_shuffle(t2, t3, Mask4{0, 4, 2, 6}) + __builtin_shuffle(t2, t3, Mask4{1, 5, 3, 7});
+  return __builtin_shuffle(u, v, Mask4{0, 1, 4, 5}) + __builtin_shuffle(u, v, Mask4{2, 3, 6, 7});
+}
+
+/// F_as at points p .. p + 3, those beyond the last repeated.
+inline Real4 four_gradients(const ElasticCell& cell, int a, int s, int p, double linear) {
+  const int w = cell.width, last = cell.num_points - 1;
+  const double* column[4];
+  for (int j = 0; j < 4; ++j) {
+    column[j] = cell.gradients + (s * cell.num_points + (p + j < last ? p + j : last)) * w;
+  }
+  Real4 total[4] = {splat(0), splat(0), splat(0), splat(0)};
+  for (int v = 0; v < w; v += 4) {
+    const Real4 phi = load(cell.phi + a * w + v);
+    for (int j = 0; j < 4; ++j) total[j] += phi * load(column[j] + v);
+  }
+  return splat(linear) + sums(total[0], total[1], total[2], total[3]);
+}
+
 template <int Dim>
 void deformation(const ElasticCell& cell) {
-  const int k = cell.num_functions, w = cell.width, q = cell.num_points;
-  for (int s = 0; s < Dim; ++s) {
-    for (int p = 0; p < cell.stride; ++p) {
-      double* column = cell.padded + (s * cell.stride + p) * w;
-      const double* given = cell.gradients + (s * q + p) * k;
-      int i = 0;
-      if (p < q) {
-        for (; i < k; ++i) column[i] = given[i];
-      }
-      for (; i < w; ++i) column[i] = 0;
-      for (int a = 0; a < Dim; ++a) {
-        Real4 total = splat(0);
-        for (int v = 0; v < w; v += 4) total += load(cell.phi + a * w + v) * load(column + v);
-        const double linear = p < q ? cell.linear[Dim * a + s] : (a == s ? 1.0 : 0.0);
-        cell.deformation[(Dim * a + s) * cell.stride + p] = linear + sum(total);
-      }
-    }
-  }
   for (int p = 0; p < cell.stride; p += 4) {
     Real4 F[kSize<Dim>], C[kSize<Dim>];
-    load_deformation<Dim>(cell, p, F);
+    for (int a = 0; a < Dim; ++a) {
+      for (int s = 0; s < Dim; ++s) {
+        const int r = Dim * a + s;
+        F[r] = four_gradients(cell, a, s, p, cell.linear[r]);
+        store(cell.deformation + r * cell.stride + p, F[r]);
+      }
+    }
     cofactor<Dim>(F, C);
     store(cell.determinant + p, determinant<Dim>(F, C));
   }
@@ -268,10 +279,10 @@ void stress(const ElasticCell& cell) {
 
 template <int Dim>
 void forces(const ElasticCell& cell, double* result) {
-  const int w = cell.width;
+  const int w = cell.width, q = cell.num_points;
   for (int s = 0; s < Dim; ++s) {
-    for (int p = 0; p < cell.num_points; ++p) {
-      const double* column = cell.padded + (s * cell.stride + p) * w;
+    for (int p = 0; p < q; ++p) {
+      const double* column = cell.gradients + (s * q + p) * w;
       for (int a = 0; a < Dim; ++a) {
         const Real4 stress = splat(cell.stress[(Dim * a + s) * cell.stride + p]);
         double* row = result + a * w;
@@ -281,59 +292,61 @@ void forces(const ElasticCell& cell, double* result) {
   }
 }
 
-/// Rows i, i + 1 of sum_r G_r^T Y_r, columns first .. first + 4 Blocks - 1.
+/// Rows i .. i + 3 of sum_r G_r^T Y_r, columns first .. first + 4 Blocks - 1.
 template <int Blocks>
-inline void two_rows(const double* G, const double* Y, int count, int w, int i, int first,
-                     double* result) {
-  Real4 upper[Blocks], lower[Blocks];
-  for (int v = 0; v < Blocks; ++v) upper[v] = lower[v] = splat(0);
+inline void four_rows(const double* G, const double* Y, int count, int w, int i, int first,
+                      double* result) {
+  Real4 total[4][Blocks];
+  for (int j = 0; j < 4; ++j) {
+    for (int v = 0; v < Blocks; ++v) total[j][v] = splat(0);
+  }
   for (int r = 0; r < count; ++r) {
-    const Real4 g0 = splat(G[r * w + i]), g1 = splat(G[r * w + i + 1]);
-    for (int v = 0; v < Blocks; ++v) {
-      const Real4 y = load(Y + r * w + first + 4 * v);
-      upper[v] += g0 * y;
-      lower[v] += g1 * y;
+    Real4 y[Blocks];
+    for (int v = 0; v < Blocks; ++v) y[v] = load(Y + r * w + first + 4 * v);
+    for (int j = 0; j < 4; ++j) {
+      const Real4 g = splat(G[r * w + i + j]);
+      for (int v = 0; v < Blocks; ++v) total[j][v] += g * y[v];
     }
   }
-  for (int v = 0; v < Blocks; ++v) {
-    store(result + i * w + first + 4 * v, upper[v]);
-    store(result + (i + 1) * w + first + 4 * v, lower[v]);
+  for (int j = 0; j < 4; ++j) {
+    for (int v = 0; v < Blocks; ++v) {
+      store(result + (i + j) * w + first + 4 * v, total[j][v]);
+    }
   }
 }
 
 void product(const double* G, const double* Y, int count, int w, bool lower_half, double* result) {
-  for (int i = 0; i < w; i += 2) {
-    const int end = lower_half ? (i / 4 + 1) * 4 : w;
+  for (int i = 0; i < w; i += 4) {
+    const int end = lower_half ? i + 4 : w;
     int first = 0;
-    for (; first + 16 <= end; first += 16) two_rows<4>(G, Y, count, w, i, first, result);
-    for (; first + 8 <= end; first += 8) two_rows<2>(G, Y, count, w, i, first, result);
-    for (; first < end; first += 4) two_rows<1>(G, Y, count, w, i, first, result);
+    for (; first + 8 <= end; first += 8) four_rows<2>(G, Y, count, w, i, first, result);
+    if (first < end) four_rows<1>(G, Y, count, w, i, first, result);
   }
 }
 
 template <int Dim>
 void hessian(const ElasticCell& cell, double* result) {
-  const int w = cell.width, n = cell.stride;
+  const int w = cell.width, q = cell.num_points;
   for (int a = 0; a < Dim; ++a) {
     for (int b = a; b < Dim; ++b) {
       const int pair = pair_of<Dim>(a, b);
       for (int s = 0; s < Dim; ++s) {
-        for (int p = 0; p < n; ++p) {
+        for (int p = 0; p < q; ++p) {
           Real4 factor[Dim];
           for (int t = 0; t < Dim; ++t) {
-            factor[t] = splat(cell.tangent[((pair * Dim + s) * Dim + t) * n + p]);
+            factor[t] = splat(cell.tangent[((pair * Dim + s) * Dim + t) * cell.stride + p]);
           }
-          double* y = cell.products + (s * n + p) * w;
+          double* y = cell.products + (s * q + p) * w;
           for (int v = 0; v < w; v += 4) {
-            Real4 total = factor[0] * load(cell.padded + p * w + v);
+            Real4 total = factor[0] * load(cell.gradients + p * w + v);
             for (int t = 1; t < Dim; ++t) {
-              total += factor[t] * load(cell.padded + (t * n + p) * w + v);
+              total += factor[t] * load(cell.gradients + (t * q + p) * w + v);
             }
             store(y + v, total);
           }
         }
       }
-      product(cell.padded, cell.products, Dim * n, w, a == b, result + pair * w * w);
+      product(cell.gradients, cell.products, Dim * q, w, a == b, result + pair * w * w);
     }
   }
 }

@@ -3,12 +3,12 @@
 namespace crease {
 
 /// The gradients of a cell's k functions at its q points, and what the elastic law says there. Arrays over
-/// points have `stride` numbers per component (a multiple of 4, q or more; the rest repeats a harmless
-/// point of weight 0), arrays over functions `width` (a multiple of 4, k or more; the rest is zero).
+/// points have `stride` numbers per component (a multiple of 4, q or more; the rest repeats the last
+/// point with weight 0), arrays over functions `width` (a multiple of 4, k or more; the rest is zero).
 struct ElasticCell {
   int num_points, stride;
   int num_functions, width;
-  const double* gradients;  ///< num_functions per column, column s q + p: d/dx_s at point p
+  const double* gradients;  ///< `width` per column, column s q + p: d/dx_s at point p
   const double* phi;        ///< Dim rows of `width` control values
   const double* linear;     ///< of the affine part, row by row
 
@@ -18,7 +18,6 @@ struct ElasticCell {
   bool mean_dilatation;     ///< lambda enters through the slope alone
   double dilatation_slope;  ///< d(energy density) / d(dilatation), of the patch
 
-  double* padded;       ///< Dim stride columns of `width`: gradients, padded
   double* deformation;  ///< F_as, component Dim a + s
   double* determinant;  ///< per point
   double* energy;       ///< per point, times the weight
@@ -26,11 +25,11 @@ struct ElasticCell {
   /// dP_as/dF_bt times the weight: Dim Dim components (s, t) for each pair a <= b; null: not wanted.
   double* tangent;
   double* pivot;     ///< least pivot of the tangent over its trace: negative where it is not convex
-  double* products;  ///< scratch, like `padded`
+  double* products;  ///< scratch, as large as the gradients
 };
 
 #define CREASE_ELASTIC_KERNELS                                                                            \
-  /* Fills padded, deformation, determinant. */                                                           \
+  /* Fills deformation and determinant. */                                                                \
   void elastic_deformation_2(const ElasticCell& cell);                                                    \
   void elastic_deformation_3(const ElasticCell& cell);                                                    \
   /* Fills energy with the dilatation (tr E or det F), stress with its derivative by F, both weighted. */ \

@@ -49,13 +49,52 @@ const Kernels<Dim>& kernels() {
 
 /// Arrays for one cell at a time, kept by each thread.
 struct Workspace {
-  std::vector<double> phi, padded, products, deformation, determinant, weight, lambda, mu, energy,
-      stress, tangent, pivot, forces, hessian;
+  std::vector<double> phi, products, deformation, determinant, weight, lambda, mu, energy, stress,
+      tangent, pivot, forces, hessian;
 };
 
 double* sized(std::vector<double>& array, int size) {
   if (std::ssize(array) < size) array.resize(size);
   return array.data();
+}
+
+/// The positive semi-definite part of a symmetric matrix.
+template <int Size>
+Matrix<Size> positive_part(const Matrix<Size>& matrix) {
+  Eigen::SelfAdjointEigenSolver<Matrix<Size>> eigen;
+  if constexpr (Size == 2) {
+    eigen.computeDirect(matrix);
+  } else {
+    eigen.compute(matrix);
+  }
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
+
+/// Of the tangent dP_as/dF_bt of an isotropic law. In the plane it falls into two blocks of 2 x 2 in the basis
+/// u_i v_j^T of F = sum_i sigma_i u_i v_i^T: stretches i = j, and shears i != j.
+template <int Dim>
+Matrix<Dim * Dim> semidefinite_part(const Matrix<Dim * Dim>& tangent, const Matrix<Dim>& F) {
+  if constexpr (Dim == 3) {
+    return positive_part<9>(tangent);
+  } else {
+    const double left = std::atan2(F(1, 0) + F(0, 1), F(0, 0) - F(1, 1)),
+                 right = std::atan2(F(1, 0) - F(0, 1), F(0, 0) + F(1, 1));
+    const double of_u = 0.5 * (left + right), of_v = 0.5 * (left - right);
+    Matrix<2> U, V;
+    U << std::cos(of_u), -std::sin(of_u), std::sin(of_u), std::cos(of_u);
+    V << std::cos(of_v), -std::sin(of_v), std::sin(of_v), std::cos(of_v);
+    Matrix<4> Q;  // columns u_0 v_0^T, u_1 v_1^T, u_0 v_1^T, u_1 v_0^T, entries by rows
+    constexpr int kFirst[] = {0, 1, 0, 1}, kSecond[] = {0, 1, 1, 0};
+    for (int c = 0; c < 4; ++c) {
+      for (int r = 0; r < 4; ++r) Q(r, c) = U(r / 2, kFirst[c]) * V(r % 2, kSecond[c]);
+    }
+    const Matrix<4> turned = Q.transpose() * tangent * Q;
+    Matrix<4> part = Matrix<4>::Zero();
+    part.topLeftCorner<2, 2>() = positive_part<2>(turned.topLeftCorner<2, 2>());
+    part.bottomRightCorner<2, 2>() = positive_part<2>(turned.bottomRightCorner<2, 2>());
+    return Q * part * Q.transpose();
+  }
 }
 
 template <int Dim>
@@ -110,8 +149,8 @@ thread_local Workspace workspace;
 template <int Dim>
 void PatchEvaluation<Dim>::prepare(std::size_t c) {
   const GradientCell<Dim>& cell = patch_.cells.cells[c];
-  const int q = static_cast<int>(cell.weights.size()), k = static_cast<int>(cell.gradients->rows());
-  const int n = padded_to_four(q), w = padded_to_four(k);
+  const int q = static_cast<int>(cell.weights.size()), k = static_cast<int>(cell.positions.size());
+  const int n = padded_to_four(q), w = static_cast<int>(cell.gradients->rows());
   Workspace& space = workspace;
   current_ = c;
   linear_rows_ = linear_;
@@ -142,14 +181,13 @@ void PatchEvaluation<Dim>::prepare(std::size_t c) {
          .neo_hookean = material_.law == ElasticLaw::kNeoHookean,
          .mean_dilatation = material_.mean_dilatation,
          .dilatation_slope = dilatation_slope_,
-         .padded = sized(space.padded, Dim * n * w),
          .deformation = sized(space.deformation, Dim * Dim * n),
          .determinant = sized(space.determinant, n),
          .energy = sized(space.energy, n),
          .stress = sized(space.stress, Dim * Dim * n),
          .tangent = with_hessian_ ? sized(space.tangent, kNumPairs<Dim> * Dim * Dim * n) : nullptr,
          .pivot = sized(space.pivot, n),
-         .products = sized(space.products, Dim * n * w)};
+         .products = sized(space.products, Dim * q * w)};
   kernels<Dim>().deformation(at_);
 }
 
@@ -241,9 +279,9 @@ void PatchEvaluation<Dim>::make_semidefinite() {
       tangent(Dim * a + s, Dim * b + t) = entry(pair, s, t, p);
       tangent(Dim * b + t, Dim * a + s) = entry(pair, s, t, p);
     });
-    const Eigen::SelfAdjointEigenSolver<Matrix<kSize>> eigen(tangent);
-    const Matrix<kSize> part = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-                               eigen.eigenvectors().transpose();
+    Matrix<Dim> F;
+    for (int r = 0; r < kSize; ++r) F(r / Dim, r % Dim) = at_.deformation[r * at_.stride + p];
+    const Matrix<kSize> part = semidefinite_part<Dim>(tangent, F);
     for_each_entry([&](int pair, int a, int b, int s, int t) {
       entry(pair, s, t, p) = part(Dim * a + s, Dim * b + t);
     });

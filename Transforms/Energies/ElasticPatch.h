@@ -25,6 +25,7 @@ struct LeastDeterminant {
 /// A patch and what it is made of.
 template <int Dim>
 struct ElasticPatch {
+  /// Tables of gradients with rows of zeros at their end, so that these are a multiple of 4.
   GradientPatch<Dim> cells;
   /// Per cell: one entry for all of its points, or one each.
   std::vector<std::vector<LameParameters>> lame;

@@ -25,7 +25,9 @@ inline DomainMesh half_ellipse(double edge_length, bool with_line = true) {
   }
   std::vector<FeatureLine> lines;
   if (with_line) lines.push_back(open_line({{0, 10}, {15, 27}, {26.8, 44}}));
-  DomainMesh domain = mesh_domain(RegionOfInterest({ring}), lines, {.edge_length = edge_length});
+  MeshOptions options;
+  options.edge_length = edge_length;
+  DomainMesh domain = mesh_domain(RegionOfInterest({ring}), lines, options);
   auto& mesh = domain.mesh;
   mesh.regions.assign(mesh.simplices.size(), 0);
   for (std::size_t t = 0; with_line && t < mesh.simplices.size(); ++t) {

@@ -32,6 +32,7 @@ std::shared_ptr<const TriangularBSplineBasis<2>> two_parts() {
     for (int& v : s) v += shift;
     domain.mesh.simplices.push_back(s);
   }
+  domain.mesh.regions.clear();
   return testing::spline_on(domain, {.degree = 2});
 }
 
@@ -75,10 +76,24 @@ TEST(ElasticPairs, RefuseContoursThatCross) {
   expect_refused(deformation, "contour pairs cross in the moving image");
   deformation = good();
   std::swap(deformation.pairs.moving[6], deformation.pairs.moving[7]);  // neighbours
-  expect_refused(deformation, "turn back in the moving image");
+  expect_refused(deformation, "from pair 6 to 7 meets that from pair 8 to 9");
   deformation = good();
   deformation.contour = {0, 1, 99};
   expect_refused(deformation, "there is no pair 100");
+}
+
+// On a straight contour exchanged neighbours do not cross, but turn back.
+TEST(ElasticPairs, RefuseContoursThatTurnBack) {
+  Landmarks<2> pairs;
+  for (double x : {0.0, 1.0, 2.0, 3.0}) pairs.fixed.emplace_back(x, 0);
+  for (double x : {0.0, 2.0, 1.0, 3.0}) pairs.moving.emplace_back(x, 5);
+  EXPECT_THAT(
+      [&] {
+        check_no_crossing(pairs, {0, 1, 2, 3});
+      },
+      ThrowsMessage<InvalidInput>(HasSubstr("1, 2 and 3 turn back in the moving image")));
+  std::swap(pairs.moving[1], pairs.moving[2]);
+  EXPECT_NO_THROW(check_no_crossing(pairs, {0, 1, 2, 3}));
 }
 
 TEST(ElasticPairs, RefuseBodiesThatFloat) {

@@ -63,7 +63,7 @@ std::pair<double, double> spring_stretches(double length) {
 /// Largest error of the three springs' displacement at points of a grid.
 double spring_error(const KnotOptions& options) {
   const auto basis = testing::spline_on(three_springs(), options);
-  const auto [s, t] = spring_stretches(3.3);
+  const auto [s, t] = spring_stretches(3.6);
   const auto exact = [s = s, t = t](const Point<2>& p) {
     const double x = p.x() < 1   ? s * p.x()
                      : p.x() < 2 ? s + t * (p.x() - 1)
@@ -80,7 +80,7 @@ double spring_error(const KnotOptions& options) {
   for (auto column : values.colwise()) {
     // Functions at an end see the straight part of that end alone.
     const double x = column.x();
-    column = Vector<2>(x < 1.5 ? (s - 1) * x : 0.3 + (s - 1) * (x - 3), 0);
+    column = Vector<2>(x < 1.5 ? (s - 1) * x : 0.6 + (s - 1) * (x - 3), 0);
   }
   const auto constraints = testing::held_control_points(*basis, ends, values);
   const auto result =
@@ -97,7 +97,7 @@ double spring_error(const KnotOptions& options) {
   return error;
 }
 
-/// Cook's membrane, linear, sheared by a unit force: displacement of the middle of its right side.
+/// Cook's membrane, linear, sheared by a unit force: height won by its upper right corner.
 double cook_tip(int cells, const ElasticTissue& tissue, PlaneState plane, bool collapsed,
                 bool mean_dilatation = false, int degree = 2) {
   SimplexMesh<2> mesh = structured_triangulation(testing::box(0, 0, 1, 1), cells, cells);
@@ -139,7 +139,7 @@ double cook_tip(int cells, const ElasticTissue& tissue, PlaneState plane, bool c
       null_space->apply(factor.solve(null_space->apply_transpose(load.reshaped())));
   SplineTransform<2> transform(basis);
   transform.set_control_points(u.reshaped(2, basis->num_control_points()));
-  const Point<2> tip = basis->nearest_point({48, 52});
+  const Point<2> tip = basis->nearest_point({48, 60});
   return (transform.map(tip) - tip).y();
 }
 
@@ -198,7 +198,7 @@ TEST(LoadStepsExact, CollapsedKnotsAreLagrangeElements) {
   const auto transform = transform_of(deformation, result);
   testing::Numbers numbers(3);
   for (int n = 0; n < 200; ++n) {
-    const Point<2> x(30 + 28 * numbers(), 30 * numbers());
+    const Point<2> x(25 + 22 * numbers(), 30 * numbers());
     const Vector<2> expected = body.displacement(x);
     EXPECT_LT((transform.map(x) - x - expected).norm(), 1e-9) << x.transpose();
   }
@@ -216,7 +216,7 @@ TEST(LoadStepsExact, CooksMembrane) {
   for (const bool collapsed : {false, true}) {
     EXPECT_NEAR(cook_tip(32, nearly_incompressible, PlaneState::kStrain, collapsed), 19.56,
                 0.006 * 19.56);
-    EXPECT_NEAR(cook_tip(32, compressible, PlaneState::kStress, collapsed), 23.04, 0.006 * 23.04);
+    EXPECT_NEAR(cook_tip(32, compressible, PlaneState::kStrain, collapsed), 23.04, 0.006 * 23.04);
   }
   // Linear elements lock; a mean dilatation frees quadratic ones already on coarse meshes.
   EXPECT_LT(cook_tip(8, nearly_incompressible, PlaneState::kStrain, true, false, 1), 17);

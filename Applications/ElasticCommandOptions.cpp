@@ -219,6 +219,7 @@ std::vector<Option> options_of(ElasticCommandOptions& options) {
                     options_of(options.run)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
+  all.push_back(mean_dilatation_option(options.material));
   return all;
 }
 

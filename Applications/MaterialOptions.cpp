@@ -42,8 +42,7 @@ void read_list(const std::string& option, const std::vector<std::string>& given,
 
 bool MaterialOptions::any_given() const {
   const MaterialOptions none;
-  return !young.empty() || !poisson.empty() || material != none.material || plane != none.plane ||
-         mean_dilatation;
+  return !young.empty() || !poisson.empty() || material != none.material || plane != none.plane;
 }
 
 std::vector<Option> options_of(MaterialOptions& o) {
@@ -64,10 +63,13 @@ std::vector<Option> options_of(MaterialOptions& o) {
        .target = &o.plane,
        .help = "In 2D: tissue grows thicker and thinner freely (stress), or is held (strain)",
        .choices = {"stress", "strain"}},
-      {.name = "mean-dilatation",
-       .target = &o.mean_dilatation,
-       .help = "Take changes of area by their mean over each patch, against locking"},
   };
+}
+
+Option mean_dilatation_option(MaterialOptions& o) {
+  return {.name = "mean-dilatation",
+          .target = &o.mean_dilatation,
+          .help = "Take changes of area by their mean over each patch, against locking"};
 }
 
 ElasticMaterial material_of(const MaterialOptions& options) {

@@ -18,8 +18,11 @@ struct MaterialOptions {
   bool any_given() const;
 };
 
-/// `--young`, `--poisson`, `--material`, `--plane` and `--mean-dilatation`.
+/// `--young`, `--poisson`, `--material` and `--plane`.
 std::vector<Option> options_of(MaterialOptions& options);
+/// `--mean-dilatation`, of load steps: it couples all control points of a patch, which a registration's matrix
+/// has no room for.
+Option mean_dilatation_option(MaterialOptions& options);
 
 /// @throws UsageError naming the option and what cannot be read, or lies out of range.
 ElasticMaterial material_of(const MaterialOptions& options);

@@ -71,9 +71,8 @@ void check_energy(const RegisterOptions& o) {
   if (!o.is_elastic()) {
     if (!o.material.any_given()) return;
     throw UsageError(
-        "--young, --poisson, --material, --plane and --mean-dilatation describe elastic tissue; "
-        "add "
-        "--energy elastic.");
+        "--young, --poisson, --material and --plane describe elastic tissue; add --energy "
+        "elastic.");
   }
   if (!o.has_basis()) {
     refuse_if(true, "energy elastic", o,

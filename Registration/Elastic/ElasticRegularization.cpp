@@ -1,5 +1,6 @@
 #include "Registration/Elastic/ElasticRegularization.h"
 
+#include "Core/Error.h"
 #include "Transforms/Energies/ElasticEnergy.h"
 
 namespace crease {
@@ -8,6 +9,11 @@ template <int Dim>
 EnergyFactory<Dim> elastic(const ElasticMaterial& material,
                            std::function<int(const Point<Dim>&)> region_at) {
   check_material(material);
+  if (material.mean_dilatation) {
+    throw InvalidInput(
+        "elastic energy: a mean dilatation couples all control points of a patch, for which a "
+        "registration has no room; leave it out.");
+  }
   ElasticMaterial relative = material;
   for (auto& [region, tissue] : relative.regions) tissue.young /= material.tissue.young;
   relative.tissue.young = 1;

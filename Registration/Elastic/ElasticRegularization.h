@@ -10,6 +10,8 @@ namespace crease {
 /// The stored energy of a registration's map (ElasticEnergy) in place of bending: tissue that resists being
 /// stretched, softer or stiffer by region. Stiffnesses count relative to that of `material.tissue`, so that
 /// weights have no unit of stress. It is integrated exactly for small strains.
+/// @throws InvalidInput as check_material(), and for a mean dilatation, which couples what a registration's
+/// matrix holds no room for.
 /// @param region_at  the region of a point, for bases whose patches have none; null: that of the patch.
 template <int Dim>
 EnergyFactory<Dim> elastic(const ElasticMaterial& material,

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "Core/Error.h"
+#include "Registration/Elastic/ElasticRegularization.h"
 #include "Testing/Applications/RegisterFixture.h"
 
 namespace crease {
@@ -67,6 +69,13 @@ TEST(RegisterElasticPhantoms, TellsRegionsByLabels) {
   const auto refused = run_with("1,7=100", "none");
   EXPECT_EQ(refused.code, 3) << refused.err;
   EXPECT_THAT(refused.err, ::testing::HasSubstr("names region 7"));
+}
+
+TEST(RegisterElasticOptions, MeanDilatationIsForLoadSteps) {
+  EXPECT_EQ(run_crease({"register", "--mean-dilatation"}).code, 2);
+  ElasticMaterial material;
+  material.mean_dilatation = true;
+  EXPECT_THROW(elastic<2>(material), InvalidInput);
 }
 
 }  // namespace

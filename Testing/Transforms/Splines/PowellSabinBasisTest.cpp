@@ -296,7 +296,8 @@ TEST_P(PowellSabin, TrianglesOfVerticesAreSmall) {
                                std::vector<Vector<2>>(mesh.vertices.size(), Vector<2>::Zero()));
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     std::vector<Point<2>> points;
-    for (const auto& p : sides.points(mesh, split, v).colwise()) points.push_back(p.head<2>());
+    const auto to_hold = sides.points(mesh, split, v);
+    for (const auto& p : to_hold.colwise()) points.push_back(p.head<2>());
     const auto& q = basis.net().vertices[v].corners;
     EXPECT_LT(0.5 * signed_content<2>({q.col(0).head<2>(), q.col(1).head<2>(), q.col(2).head<2>()}),
               2.01 * signed_area(convex_hull(points)));

@@ -36,7 +36,6 @@ TEST(Command, RefusesWhatBelongsToLaterVersions) {
   const std::vector<std::string> base = {"register", "--fixed", "a", "--moving", "b", "-o", "c"};
   for (const auto& extra : std::vector<std::vector<std::string>>{{"--orientations", "exact"},
                                                                  {"--slide-labels", "l.mha"},
-                                                                 {"--energy", "elastic"},
                                                                  {"--transform", "demons"},
                                                                  {"--transform", "syn"}}) {
     auto arguments = base;
@@ -45,7 +44,7 @@ TEST(Command, RefusesWhatBelongsToLaterVersions) {
     EXPECT_EQ(run.code, 2) << ::testing::PrintToString(extra);
     EXPECT_THAT(run.err, HasSubstr("unknown"));
   }
-  for (const char* name : {"elastic", "mammogram", "shell", "solid"}) {
+  for (const char* name : {"mammogram", "shell", "solid"}) {
     EXPECT_EQ(run_crease({name}).code, 2);
   }
 }

@@ -74,7 +74,7 @@ TEST_F(RegisterBadOptions, OptionsOfLaterVersionsAreUnknown) {
   }
   expect_refused(run({"--transform", "demons"}), 2,
                  {"--transform: \"demons\" is unknown", "It takes "});
-  for (const char* command : {"elastic", "mammogram", "shell", "solid"}) {
+  for (const char* command : {"mammogram", "shell", "solid"}) {
     const auto refused = testing::run_crease({command, "--output", output()});
     EXPECT_EQ(refused.code, 2);
     EXPECT_THAT(refused.err, HasSubstr(std::string("\"") + command + "\" is not a subcommand"));

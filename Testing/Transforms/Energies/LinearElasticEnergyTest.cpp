@@ -1,7 +1,5 @@
 #include "Transforms/Energies/LinearElasticEnergy.h"
 
-#include <gmock/gmock.h>
-
 #include "Core/Parallel.h"
 #include "Testing/Transforms/Energies/EnergyChecks.h"
 #include "Testing/Transforms/SampleBases.h"
@@ -9,9 +7,6 @@
 
 namespace crease {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 template <int Dim>
 Box<Dim> test_box() {
@@ -79,31 +74,6 @@ void expect_exact_hessian() {
 }
 
 }  // namespace
-
-TEST(LameParameters, OfPlaneStressAndStrain) {
-  const ElasticTissue tissue{1000, 0.495};
-  EXPECT_NEAR(lame_parameters(tissue, PlaneState::kStrain).lambda, 33.1e3, 20);
-  EXPECT_NEAR(lame_parameters(tissue, PlaneState::kStress).lambda, 656, 1);
-  // lambda* = 2 lambda mu / (lambda + 2 mu)
-  const auto [lambda, mu] = lame_parameters({3, 0.3}, PlaneState::kStrain);
-  const auto plane = lame_parameters({3, 0.3}, PlaneState::kStress);
-  EXPECT_NEAR(plane.lambda, 2 * lambda * mu / (lambda + 2 * mu), 1e-14);
-  EXPECT_EQ(plane.mu, mu);
-}
-
-TEST(LameParameters, RefusesImpossibleMaterials) {
-  const auto lame = [](double E, double nu, PlaneState plane) {
-    return [=] { lame_parameters({E, nu}, plane); };
-  };
-  EXPECT_THAT(lame(0, 0.3, PlaneState::kStress), ThrowsMessage<InvalidInput>(HasSubstr("it is 0")));
-  EXPECT_THAT(lame(1, 0.5, PlaneState::kStress),
-              ThrowsMessage<InvalidInput>(HasSubstr("between -1 and 0.5")));
-  EXPECT_THAT(lame(1, -1, PlaneState::kStrain),
-              ThrowsMessage<InvalidInput>(HasSubstr("between -1 and 0.5")));
-  EXPECT_THAT(lame(1, 0.4995, PlaneState::kStrain),
-              ThrowsMessage<InvalidInput>(HasSubstr("plane stress")));
-  EXPECT_NO_THROW(lame(1, 0.4995, PlaneState::kStress)());
-}
 
 TEST(LinearElasticEnergy, OfConstantStrains) {
   expect_constant_strains<2>();

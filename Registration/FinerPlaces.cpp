@@ -166,9 +166,10 @@ std::vector<FinerPlace<Dim>> finer_places(const MinimumReached<Dim>& minimum) {
   const double least = kLeastPixels * minimum.grid->raster().spacing.minCoeff();
   std::vector<FinerPlace<Dim>> places;
   const double spacing = relative_spacing(minimum.transform.basis());
-  for (double size = spacing * largest / 2; size >= least; size /= 2) {
-    if (size * std::sqrt(2.0) <= spacing * smallest / 2) break;
+  double size = spacing * largest / 2;
+  while (size >= least && size * std::sqrt(2.0) > spacing * smallest / 2) {
     add_places_of_size(minimum, size, places);
+    size /= 2;
   }
   std::ranges::stable_sort(places, std::ranges::greater(), &FinerPlace<Dim>::gain);
   const double all = std::accumulate(places.begin(), places.end(), 0.0,

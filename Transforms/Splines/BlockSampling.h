@@ -53,8 +53,8 @@ void choose_block_samples(int num_rows, int num_columns, const Covered& covered,
 
 /// How far apart samples may lie where control points lie `spacing` samples apart.
 inline int block_sampling(double spacing) {
-  constexpr int kBlock = CurvatureBlocks<2>::kBlock;
-  return spacing >= kBlock ? kBlock : spacing >= kBlock / 2 ? kBlock / 2 : 1;
+  constexpr int kBlock = CurvatureBlocks<2>::kBlock, kHalf = kBlock / 2;
+  return spacing >= kBlock ? kBlock : spacing >= kHalf ? kHalf : 1;
 }
 
 }  // namespace crease

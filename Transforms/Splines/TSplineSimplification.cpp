@@ -150,7 +150,9 @@ TSplineApproximation simplified(const TSplineBasis& basis,
                                " control points, and the tolerance must be positive."));
   }
   const auto pieces = pieces_of(basis, JumpMeter(basis, control_points));
-  for (double threshold = tolerance; threshold > 1e-6 * tolerance; threshold /= 4) {
+  constexpr double kLeastThreshold = 1e-6;  // of the tolerance
+  double threshold = tolerance;
+  while (threshold > kLeastThreshold * tolerance) {
     TMesh mesh = needed_mesh(basis.mesh(), pieces, threshold);
     if (std::ssize(mesh.vertices()) >= basis.num_control_points()) break;
     TFit found = fit(mesh, basis.mesh(), control_points);
@@ -158,6 +160,7 @@ TSplineApproximation simplified(const TSplineBasis& basis,
       return {basis.on(mesh.without_empty_lines()), std::move(found.control_points),
               found.max_error};
     }
+    threshold /= 4;
   }
   return {basis.on(basis.mesh()), control_points, 0};
 }

@@ -209,7 +209,7 @@ std::vector<DeterminantPiece<2>> TriangularBSplinePieces::pieces(int patch) cons
       values[b] = nodes.jacobians[fan.nodes[b]];
       error = std::max(error, nodes.errors[fan.nodes[b]]);
     }
-    result.push_back(simplex_piece<2>(fan.corners, degree, values, error));
+    result.emplace_back(simplex_piece<2>(fan.corners, degree, values, error));
   }
   return result;
 }

@@ -32,7 +32,8 @@ double mean_edge_length(const SimplexMesh<Dim>& mesh, int simplex) {
       sum += (mesh.vertices[corners[j]] - mesh.vertices[corners[k]]).norm();
     }
   }
-  return sum / (Dim * (Dim + 1) / 2);
+  constexpr int kNumEdges = Dim * (Dim + 1) / 2;
+  return sum / kNumEdges;
 }
 
 }  // namespace crease

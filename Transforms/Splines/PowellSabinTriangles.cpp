@@ -29,7 +29,7 @@ class Wedge {
     legs_.col(1) = e;
     Matrix<2> inverse;
     inverse << -e.y(), e.x(), -d.y(), d.x();
-    for (const auto& corner : polygon) points_.push_back(inverse / opening_ * (corner - apex_));
+    for (const auto& corner : polygon) points_.emplace_back(inverse / opening_ * (corner - apex_));
   }
 
   bool closed() const { return !points_.empty(); }

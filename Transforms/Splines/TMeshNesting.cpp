@@ -160,8 +160,7 @@ TCommonMesh common_refinement(const TMesh& first, const TMesh& second) {
   while (true) {
     TNesting of_second = nested(second, of_first.mesh);
     if (of_second.mesh == of_first.mesh) {
-      return {std::move(of_second.mesh), std::move(of_first.transfer),
-              std::move(of_second.transfer)};
+      return {std::move(of_second.mesh), of_first.transfer, of_second.transfer};
     }
     of_first = nested(first, std::move(of_second.mesh));
   }

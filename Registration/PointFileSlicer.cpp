@@ -87,7 +87,7 @@ std::string SlicerTable::with_points(const std::vector<Point<3>>& points) const 
   return text;
 }
 
-struct SlicerMarkups::Contents {
+struct SlicerMarkups::Contents {  // NOLINT(bugprone-exception-escape): JSON's move does not throw
   /// Which control point of which markup a point is.
   struct Place {
     std::size_t markup, control_point;

@@ -31,12 +31,12 @@ std::vector<Blob<Dim>> draw_blobs(int size, Random random) {
 }
 
 // Evenly distributed in the unit disc or ball.
-Vector<2> draw_in_ball(Random& random, Vector<2>) {
+Vector<2> draw_in_ball(Random& random, const Vector<2>&) {
   const double radius = std::sqrt(random.uniform());
   const double angle = 2 * std::numbers::pi * random.uniform();
   return radius * Vector<2>(std::cos(angle), std::sin(angle));
 }
-Vector<3> draw_in_ball(Random& random, Vector<3>) {
+Vector<3> draw_in_ball(Random& random, const Vector<3>&) {
   const double radius = std::cbrt(random.uniform());
   const double angle = 2 * std::numbers::pi * random.uniform();
   const double z = random.uniform(-1, 1), ring = std::sqrt(1 - z * z);

@@ -62,7 +62,8 @@ std::vector<Option> input_options(ElasticCommandOptions& o) {
       {.name = "truth",
        .target = &o.truth,
        .placeholder = "FILE",
-       .help = "True displacement of a phantom, mm: errors are reported after each step",
+       .help = "True displacement of a phantom, mm: errors are reported before, after the pairs "
+               "and after the refinement",
        .is_path = true},
   };
 }
@@ -205,7 +206,10 @@ void check_refinement(const ElasticCommandOptions& o) {
   refuse(o.alpha.has_value(), "alpha");
   refuse(o.alpha_relative.has_value(), "alpha-relative");
   refuse(o.pin != "corners", "pin contour");
-  if (o.damped_step != 0.01 && o.refinement != "damped") {
+  const ElasticCommandOptions usual;
+  refuse(o.levels != usual.levels, "levels");
+  refuse(o.smoothing != usual.smoothing, "smoothing");
+  if (o.damped_step != usual.damped_step && o.refinement != "damped") {
     throw UsageError("--damped-step needs --refinement damped.");
   }
   if (o.smoothing.empty()) throw UsageError("--smoothing needs at least one width, such as 1.5.");
@@ -214,16 +218,20 @@ void check_refinement(const ElasticCommandOptions& o) {
 }  // namespace
 
 std::vector<Option> options_of(ElasticCommandOptions& options) {
-  std::vector<Option> all = input_options(options);
-  for (auto part : {body_options(options), options_of(options.material), solver_options(options),
-                    options_of(options.run)}) {
-    all.insert(all.end(), part.begin(), part.end());
-  }
-  all.push_back(mean_dilatation_option(options.material));
-  return all;
+  return joined({input_options(options),
+                 body_options(options),
+                 options_of(options.material),
+                 {mean_dilatation_option(options.material)},
+                 solver_options(options),
+                 options_of(options.run)});
 }
 
 void check(const ElasticCommandOptions& o) {
+  if (!o.needs_anatomy() && (o.mirror != "auto" || o.threshold || o.force)) {
+    throw UsageError(
+        "--mirror, --threshold and --force are for mammograms: with --roi auto, --pectoral or "
+        "--contour-pairs.");
+  }
   if (o.pairs.size() > 2) {
     throw UsageError(
         "--pairs takes one CSV file, or two files of 3D Slicer: the fixed points first.");

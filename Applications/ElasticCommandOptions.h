@@ -53,8 +53,8 @@ struct ElasticCommandOptions {
   bool needs_anatomy() const {
     return roi == "auto" || pectoral_source() != "none" || num_contour_pairs() > 0;
   }
-  /// 0: adaptive.
-  int num_steps() const { return steps == "adaptive" ? 0 : std::stoi(steps); }
+  /// Of equal steps.
+  int num_steps() const { return std::stoi(steps); }
 };
 
 /// The options that set these.

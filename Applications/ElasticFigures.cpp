@@ -7,6 +7,7 @@
 
 #include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
+#include "Applications/LandmarkErrors.h"
 
 namespace crease {
 namespace {
@@ -31,14 +32,8 @@ Json breast_json(const ElasticInput& input) {
 Json pairs_json(const ElasticStory& story) {
   const Landmarks<2>& pairs = story.outcome.pairs;
   const auto errors = [&](const Transform<2>& transform) {
-    double largest = 0, squares = 0;
-    for (int i = 0; i < pairs.size(); ++i) {
-      const auto n = static_cast<std::size_t>(i);
-      const double error = (transform.map(pairs.fixed[n]) - pairs.moving[n]).norm();
-      largest = std::max(largest, error);
-      squares += error * error;
-    }
-    return Json{{"max_error_mm", largest}, {"rms_error_mm", std::sqrt(squares / pairs.size())}};
+    const LandmarkErrors found = landmark_errors(pairs, transform);
+    return Json{{"max_error_mm", found.largest}, {"rms_error_mm", found.rms}};
   };
   const auto& registration = story.outcome.registration;
   Json json = {{"count", pairs.size()},
@@ -55,7 +50,7 @@ Json material_json(const ElasticStory& story) {
   const auto tissue = [](const ElasticTissue& t) {
     return Json{{"young", t.young}, {"poisson", t.poisson}};
   };
-  Json json = {{"law", story.options.material.material},
+  Json json = {{"law", story.options.material.law},
                {"plane", story.options.material.plane},
                {"breast", tissue(material.tissue)},
                {"regions", Json::object()}};
@@ -106,15 +101,8 @@ Json refinement_json(const ImageRefinementResult& refinement) {
 }
 
 Json errors_json(const TargetErrors& errors) {
-  const auto statistics = [](const ErrorStatistics& e) {
-    return Json{{"mean", e.mean},
-                {"rms", e.rms},
-                {"median", e.median},
-                {"percentile_95", e.percentile_95},
-                {"max", e.maximum}};
-  };
-  Json json = {{"before", statistics(errors.before)}, {"pairs", statistics(errors.by_pairs)}};
-  json["refinement"] = errors.by_images ? statistics(*errors.by_images) : Json();
+  Json json = {{"before", to_json(errors.before)}, {"pairs", to_json(errors.by_pairs)}};
+  json["refinement"] = errors.by_images ? to_json(*errors.by_images) : Json();
   return json;
 }
 

@@ -42,7 +42,8 @@ MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const Image<fl
   wanted.name = file;
   wanted.threshold = options.threshold;
   wanted.force = options.force;
-  if (!options.spacing.empty()) wanted.frame.pixel_size_mm = options.spacing[0];
+  // Where --spacing was for another file, this one's own size stands in the raster.
+  if (!options.spacing.empty()) wanted.frame.pixel_size_mm = image.raster().spacing.x();
   if (options.pectoral_source() == "none") wanted.pectoral_search = PectoralSearch::kNone;
   if (is_fixed && options.pectoral_is_file()) {
     wanted.pectoral_line = read_pectoral_line(*options.pectoral, report);
@@ -120,15 +121,15 @@ void set_body(const ElasticCommandOptions& options, const Raster<2>& given, Elas
 }
 
 /// Given pairs first, then those along the skin.
-void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, RunReport& report) {
+void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputFiles& files,
+               RunReport& report) {
   if (!options.pairs.empty()) {
-    input.pairs = options.pairs.size() == 2
-                      ? read_slicer_landmarks<2>(options.pairs[0], options.pairs[1])
-                      : read_landmarks<2>(options.pairs[0]);
-    for (const std::string& file : options.pairs) report.add_input("pairs", file);
+    input.pairs = files.landmarks<2>("pairs", options.pairs);
     // A reflection is its own inverse.
     for (Point<2>& q : input.pairs.moving) q = input.to_given(q);
-    input.pairs.sigma_mm.clear();  // all are met exactly
+    input.pairs.sigma_mm.clear();     // all are met exactly
+    input.pairs.fixed_angle.clear();  // directions are not used
+    input.pairs.moving_angle.clear();
     if (input.moving_region) {
       report.add_warnings(snap_moving_points(input.pairs, *input.moving_region));
     }
@@ -175,7 +176,7 @@ ElasticInput read_input(const ElasticCommandOptions& options, RunReport& report)
   ElasticInput input(std::move(fixed), files.image<2>("moving", options.moving));
   if (options.needs_anatomy()) look_at_mammograms(options, input, report);
   set_body(options, given, input, files, report);
-  set_pairs(options, input, report);
+  set_pairs(options, input, files, report);
   if (options.truth) input.truth = files.displacement<2>("truth", *options.truth);
   files.check_spacing_was_used();
   return input;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "Applications/WarpedImage.h"
+#include "Applications/ImageOutput.h"
 #include "Core/Parallel.h"
 #include "Images/MakeInterpolator.h"
 #include "Registration/Elastic/StiffnessMap.h"
@@ -92,7 +92,7 @@ std::optional<TargetErrors> target_errors(const ElasticInput& input,
         const Point<2> x = raster.point({i, static_cast<double>(j)});
         const Vector<2>& truth = (*input.truth)(i, static_cast<int>(j));
         if (!body.contains(x) || !truth.allFinite()) continue;
-        const Point<2> mapped = transform == nullptr ? x : input.to_given(transform->map(x));
+        const Point<2> mapped = input.to_given(transform == nullptr ? x : transform->map(x));
         errors[static_cast<std::size_t>(j)].push_back((mapped - x - truth).norm());
       }
     });
@@ -134,7 +134,7 @@ void write_pictures(const OutputFolder& output, const ElasticInput& input,
   DeformationDrawing<2> mesh = grid;
   mesh.mesh = &outcome.domain.mesh.mesh;
   mesh.landmarks = {};
-  const std::vector<std::pair<const char*, std::function<Picture()>>> pictures = {
+  const std::vector<NamedPicture> pictures = {
       {"fixed", [&] { return image_picture(fixed, "fixed"); }},
       {"moving", [&] { return image_picture(input.moving.image, "moving"); }},
       {"warped", [&] { return image_picture(images.warped, "moving, warped to the fixed image"); }},
@@ -145,13 +145,7 @@ void write_pictures(const OutputFolder& output, const ElasticInput& input,
       {"mesh", [&] { return deformation_picture(input.moving.image, mesh); }},
       {"grid", [&] { return deformation_picture(input.moving.image, grid); }},
   };
-  std::vector<std::function<void()>> jobs = std::move(further_jobs);
-  for (const auto& [name, draw] : pictures) {
-    jobs.push_back([&, file = std::string("pictures/") + name + ".png"] {
-      output.write(file, [&](const Path& path) { write_picture(path, draw()); });
-    });
-  }
-  parallel_for(std::ssize(jobs), [&](std::int64_t i) { jobs[static_cast<std::size_t>(i)](); });
+  write_all(output, pictures, std::move(further_jobs));
 }
 
 }  // namespace crease

@@ -25,7 +25,8 @@ ElasticImages make_images(const ElasticInput& input, const ElasticOutcome& outco
 /// Determinants and folds over the body.
 Evaluation<2> evaluate_outcome(const ElasticImages& images);
 
-/// Target errors over the body where the truth is known: without a map, after the pairs, after the refinement.
+/// Target errors over the body where the truth is known: without a map (but mirrored), after the pairs, after
+/// the refinement.
 struct TargetErrors {
   ErrorStatistics before, by_pairs;
   std::optional<ErrorStatistics> by_images;

@@ -1,5 +1,6 @@
 #include "Applications/ElasticRun.h"
 
+#include "Applications/MetricChoice.h"
 #include "Registration/Elastic/PairPlaces.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
@@ -8,13 +9,6 @@ namespace crease {
 namespace {
 
 constexpr double kQuietSnap = 0.5;  // mm that a smooth contour may run outside the mesh
-
-MetricFactory<2> metric_of(const std::string& name) {
-  if (name == "mi") return mutual_information<2>();
-  if (name == "nmi") return mutual_information<2>({.kind = InformationKind::kNormalized});
-  if (name == "lncc") return local_ncc<2>();
-  return name == "ncc" ? ncc<2>() : ssd<2>();
-}
 
 ElasticDomainOptions domain_options(const ElasticCommandOptions& o) {
   ElasticDomainOptions options;
@@ -40,7 +34,7 @@ ElasticRegistrationOptions registration_options(const ElasticCommandOptions& o) 
   options.refine = !o.no_refine;
   options.pin_contour = o.pin == "contour";
   ImageRefinementOptions& refinement = options.refinement;
-  refinement.metric = metric_of(o.metric);
+  refinement.metric = metric_named<2>(o.metric);
   if (o.alpha_relative) refinement.relative_weight = *o.alpha_relative;
   refinement.weight = o.alpha;
   refinement.levels = o.levels;

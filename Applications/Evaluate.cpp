@@ -125,7 +125,7 @@ EvaluationFiles<Dim> read_files(const EvaluateCommand& c, RunReport& report) {
   if (c.labels) files.labels = input.labels<Dim>("labels", *c.labels);
   if (c.moving_labels) files.moving_labels = input.labels<Dim>("moving-labels", *c.moving_labels);
   if (c.mask) files.mask = input.mask<Dim>("mask", *c.mask);
-  if (!c.landmarks.empty()) files.landmarks = input.landmarks<Dim>(c.landmarks);
+  if (!c.landmarks.empty()) files.landmarks = input.landmarks<Dim>("landmarks", c.landmarks);
   input.check_spacing_was_used();
   if (!c.transforms.empty()) files.transform = read_transforms<Dim>(report, c.transforms);
   return files;

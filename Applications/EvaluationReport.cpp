@@ -22,17 +22,17 @@ std::string point_text(const Point<Dim>& p) {
   return text + ")";
 }
 
-Json to_json(const ErrorStatistics& errors) {
-  return {{"count", errors.count},   {"mean", errors.mean},         {"rms", errors.rms},
-          {"median", errors.median}, {"p95", errors.percentile_95}, {"max", errors.maximum}};
-}
-
 std::string row(const std::string& name, const ErrorStatistics& e) {
   return fmt::format("{:<22} mean {:.4f}  median {:.4f}  95 % {:.4f}  max {:.4f} mm  ({})\n", name,
                      e.mean, e.median, e.percentile_95, e.maximum, e.count);
 }
 
 }  // namespace
+
+Json to_json(const ErrorStatistics& errors) {
+  return {{"count", errors.count},   {"mean", errors.mean},         {"rms", errors.rms},
+          {"median", errors.median}, {"p95", errors.percentile_95}, {"max", errors.maximum}};
+}
 
 template <int Dim>
 Json to_json(const JacobianEvaluation<Dim>& jacobian) {

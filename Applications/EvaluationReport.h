@@ -12,6 +12,7 @@ template <int Dim>
 nlohmann::ordered_json to_json(const Evaluation<Dim>& evaluation);
 
 /// The parts that other reports use as well.
+nlohmann::ordered_json to_json(const ErrorStatistics& errors);
 template <int Dim>
 nlohmann::ordered_json to_json(const JacobianEvaluation<Dim>& jacobian);
 template <int Dim>
@@ -21,7 +22,7 @@ nlohmann::ordered_json to_json(const BodyEvaluation<Dim>& body);
 template <int Dim>
 std::string summary(const Evaluation<Dim>& evaluation);
 
-/// "folds at 12 of 262144 samples (0.0046 %), worst near (12.5, 30) mm (det -0.2)".
+/// "the map folds at 12 of 262144 samples (0.0046 %), worst near (12.5, 30) mm (det -0.2)".
 template <int Dim>
 std::string folding_text(const JacobianEvaluation<Dim>& jacobian, std::int64_t samples);
 

@@ -85,10 +85,11 @@ DisplacementField<Dim> InputFiles::displacement(const std::string& option,
 }
 
 template <int Dim>
-Landmarks<Dim> InputFiles::landmarks(const std::vector<std::string>& files) {
+Landmarks<Dim> InputFiles::landmarks(const std::string& option,
+                                     const std::vector<std::string>& files) {
   Landmarks<Dim> landmarks = files.size() == 2 ? read_slicer_landmarks<Dim>(files[0], files[1])
                                                : read_landmarks<Dim>(files[0]);
-  for (const std::string& file : files) report_.add_input("landmarks", file);
+  for (const std::string& file : files) report_.add_input(option, file);
   return landmarks;
 }
 
@@ -137,8 +138,8 @@ template LabelImage<2> InputFiles::labels<2>(const std::string&, const std::stri
 template LabelImage<3> InputFiles::labels<3>(const std::string&, const std::string&);
 template DisplacementField<2> InputFiles::displacement<2>(const std::string&, const std::string&);
 template DisplacementField<3> InputFiles::displacement<3>(const std::string&, const std::string&);
-template Landmarks<2> InputFiles::landmarks<2>(const std::vector<std::string>&);
-template Landmarks<3> InputFiles::landmarks<3>(const std::vector<std::string>&);
+template Landmarks<2> InputFiles::landmarks<2>(const std::string&, const std::vector<std::string>&);
+template Landmarks<3> InputFiles::landmarks<3>(const std::string&, const std::vector<std::string>&);
 template Mask<2> on_raster(const Mask<2>&, const Raster<2>&);
 template Mask<3> on_raster(const Mask<3>&, const Raster<3>&);
 template LabelImage<2> on_raster(const LabelImage<2>&, const Raster<2>&);

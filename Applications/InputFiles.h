@@ -33,7 +33,7 @@ class InputFiles {
   DisplacementField<Dim> displacement(const std::string& option, const std::string& file);
   /// One CSV file, or two files of 3D Slicer with the fixed points first.
   template <int Dim>
-  Landmarks<Dim> landmarks(const std::vector<std::string>& files);
+  Landmarks<Dim> landmarks(const std::string& option, const std::vector<std::string>& files);
 
   /// @throws UsageError when a spacing was given but every image told its own.
   void check_spacing_was_used() const;

@@ -42,7 +42,7 @@ void read_list(const std::string& option, const std::vector<std::string>& given,
 
 bool MaterialOptions::any_given() const {
   const MaterialOptions none;
-  return !young.empty() || !poisson.empty() || material != none.material || plane != none.plane;
+  return !young.empty() || !poisson.empty() || law != none.law || plane != none.plane;
 }
 
 std::vector<Option> options_of(MaterialOptions& o) {
@@ -56,7 +56,7 @@ std::vector<Option> options_of(MaterialOptions& o) {
        .placeholder = "NU[,LABEL=NU]",
        .help = "Poisson's ratio likewise, above -1 and below 0.5 (0.495)"},
       {.name = "material",
-       .target = &o.material,
+       .target = &o.law,
        .help = "Law of elasticity; neo-hookean tissue does not fold",
        .choices = {"st-venant-kirchhoff", "neo-hookean"}},
       {.name = "plane",
@@ -74,7 +74,7 @@ Option mean_dilatation_option(MaterialOptions& o) {
 
 ElasticMaterial material_of(const MaterialOptions& options) {
   ElasticMaterial material;
-  if (options.material == "neo-hookean") material.law = ElasticLaw::kNeoHookean;
+  if (options.law == "neo-hookean") material.law = ElasticLaw::kNeoHookean;
   if (options.plane == "strain") material.plane = PlaneState::kStrain;
   material.mean_dilatation = options.mean_dilatation;
   // All tissue first, so that regions inherit what holds for it whatever the order.

@@ -11,7 +11,7 @@ namespace crease {
 /// What elastic tissue is made of, as it was typed.
 struct MaterialOptions {
   std::vector<std::string> young, poisson;  ///< "E" of all tissue, "label=E" of one region
-  std::string material = "st-venant-kirchhoff";
+  std::string law = "st-venant-kirchhoff";  ///< --material
   std::string plane = "stress";
   bool mean_dilatation = false;
 

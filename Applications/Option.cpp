@@ -173,4 +173,10 @@ std::string default_text(const Option& option) {
                     option.target);
 }
 
+std::vector<Option> joined(std::initializer_list<std::vector<Option>> parts) {
+  std::vector<Option> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 }  // namespace crease

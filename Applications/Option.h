@@ -49,4 +49,7 @@ std::optional<ConfigValue> current_value(const Option& option);
 /// The default as the help shows it; empty when there is none.
 std::string default_text(const Option& option);
 
+/// All of these, in order.
+std::vector<Option> joined(std::initializer_list<std::vector<Option>> parts);
+
 }  // namespace crease

@@ -9,6 +9,7 @@
 
 #include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
+#include "Applications/LandmarkErrors.h"
 #include "Applications/RegisterInput.h"
 #include "Applications/RegisterOptions.h"
 #include "Applications/RegisterOutput.h"
@@ -36,25 +37,6 @@ axis, h the size of a pixel, and near a crease by h/4 times the jump of the slop
 Example: two X-rays with rigid bones and some landmarks
   crease register --fixed monday.png --moving friday.png --spacing 0.2,0.2 --rigid-labels bones.png \
       --landmarks pairs.csv --init-transform rigid --output registered)";
-
-struct LandmarkErrors {
-  std::vector<double> each;
-  double largest = 0;
-  double rms = 0;
-};
-
-template <int Dim>
-LandmarkErrors landmark_errors(const Landmarks<Dim>& landmarks, const Transform<Dim>& transform) {
-  LandmarkErrors errors;
-  for (int j = 0; j < landmarks.size(); ++j) {
-    const double error = (transform.map(landmarks.fixed[j]) - landmarks.moving[j]).norm();
-    errors.each.push_back(error);
-    errors.largest = std::max(errors.largest, error);
-    errors.rms += error * error / landmarks.size();
-  }
-  errors.rms = std::sqrt(errors.rms);
-  return errors;
-}
 
 Json energies_json(const std::map<std::string, double>& energies) {
   Json json = {{"image", 0.0}, {"rigidity", 0.0}, {"bending", 0.0}};

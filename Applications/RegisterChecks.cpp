@@ -68,7 +68,7 @@ void check_transform(const RegisterOptions& o) {
 }
 
 void check_energy(const RegisterOptions& o) {
-  if (!o.is_elastic()) {
+  if (!o.has_elastic_energy()) {
     if (!o.material.any_given()) return;
     throw UsageError(
         "--young, --poisson, --material and --plane describe elastic tissue; add --energy "
@@ -89,7 +89,7 @@ void check_energy(const RegisterOptions& o) {
 
 void check_adaptation(const RegisterOptions& o) {
   if (o.adapt == 0) return;
-  if (o.is_elastic()) {
+  if (o.has_elastic_energy()) {
     throw UsageError(
         "--adapt needs bending, which says what finer patches cost; leave --energy "
         "elastic out.");
@@ -139,7 +139,7 @@ void check_weights(const RegisterOptions& o) {
         "--feature-lines FILE with closed lines.");
   }
   const bool bending = !o.gamma || *o.gamma > 0;
-  if (bending && !o.is_elastic() && o.spline_degree() == 1) {
+  if (bending && !o.has_elastic_energy() && o.spline_degree() == 1) {
     throw UsageError(
         "--degree 1: such splines have no bending energy; take --degree 2 or more, --energy "
         "elastic, or "

@@ -80,7 +80,8 @@ RegisterInput<Dim> read_input(const RegisterOptions& options, RunReport& report)
         on_raster(input.mask<Dim>("moving-mask", *options.moving_mask), read.moving.image.raster());
   }
   if (options.rigid_labels) read.labels = read_bodies<Dim>(options, fixed, input);
-  if (!options.landmarks.empty()) read.landmarks = input.landmarks<Dim>(options.landmarks);
+  if (!options.landmarks.empty())
+    read.landmarks = input.landmarks<Dim>("landmarks", options.landmarks);
   if constexpr (Dim == 2) {
     if (options.roi) read.region = read_region(*options.roi, fixed, input, report);
     if (options.feature_lines) {

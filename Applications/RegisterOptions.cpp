@@ -231,12 +231,8 @@ bool RegisterOptions::init_is_file() const {
 }
 
 std::vector<Option> options_of(RegisterOptions& options) {
-  std::vector<Option> all = input_options(options);
-  for (auto part : {domain_options(options), cost_options(options), options_of(options.material),
-                    solver_options(options), options_of(options.run)}) {
-    all.insert(all.end(), part.begin(), part.end());
-  }
-  return all;
+  return joined({input_options(options), domain_options(options), cost_options(options),
+                 options_of(options.material), solver_options(options), options_of(options.run)});
 }
 
 }  // namespace crease

@@ -73,7 +73,7 @@ struct RegisterOptions {
   /// Whether bodies may be known, from labels or closed lines.
   bool may_have_bodies() const { return rigid_labels || feature_lines; }
   /// Whether the motion is that of an elastic body, rather than one that resists bending.
-  bool is_elastic() const { return energy == "elastic"; }
+  bool has_elastic_energy() const { return energy == "elastic"; }
   bool init_is_file() const;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "Applications/WarpedImage.h"
+#include "Applications/ImageOutput.h"
 #include "Core/Parallel.h"
 #include "Images/MakeInterpolator.h"
 #include "Images/Resample.h"
@@ -113,7 +113,7 @@ void write_pictures(const OutputFolder& output, const RegisterOptions& options,
   if constexpr (Dim == 2) {
     if (outcome.domain) drawing.feature_lines = outcome.domain->feature_lines;
   }
-  const std::vector<std::pair<const char*, std::function<Picture()>>> pictures = {
+  const std::vector<NamedPicture> pictures = {
       {"fixed", [&] { return image_picture(fixed, "fixed"); }},
       {"moving", [&] { return image_picture(input.moving.image, "moving"); }},
       {"warped", [&] { return image_picture(images.warped, "moving, warped to the fixed image"); }},
@@ -123,13 +123,7 @@ void write_pictures(const OutputFolder& output, const RegisterOptions& options,
       {"strain", [&] { return strain_picture(images.strain); }},
       {"grid", [&] { return deformation_picture(input.moving.image, drawing); }},
   };
-  std::vector<std::function<void()>> jobs = std::move(further_jobs);
-  for (const auto& [name, draw] : pictures) {
-    jobs.push_back([&, file = std::string("pictures/") + name + ".png"] {
-      output.write(file, [&](const Path& path) { write_picture(path, draw()); });
-    });
-  }
-  parallel_for(std::ssize(jobs), [&](std::int64_t i) { jobs[static_cast<std::size_t>(i)](); });
+  write_all(output, pictures, std::move(further_jobs));
 }
 
 #define CREASE_INSTANTIATE(Dim)                                                                    \

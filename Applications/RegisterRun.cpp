@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Applications/MetricChoice.h"
 #include "Applications/RegisterBasis.h"
 #include "Images/IntensityRange.h"
 #include "Images/Moments.h"
@@ -50,14 +51,6 @@ AlignmentOptions alignment_options(const RegisterOptions& options, int num_landm
   return alignment;
 }
 
-template <int Dim>
-MetricFactory<Dim> metric_of(const std::string& name) {
-  if (name == "mi") return mutual_information<Dim>();
-  if (name == "nmi") return mutual_information<Dim>({.kind = InformationKind::kNormalized});
-  if (name == "lncc") return local_ncc<Dim>();
-  return name == "ncc" ? ncc<Dim>() : ssd<Dim>();
-}
-
 /// What is compared; masks are the first's.
 template <int Dim>
 std::vector<ChannelView<Dim>> channels_of(const RegisterOptions& options,
@@ -69,7 +62,7 @@ std::vector<ChannelView<Dim>> channels_of(const RegisterOptions& options,
     channel.moving = c == 0 ? &input.moving.image : &input.further_moving[c - 1].image;
     channel.fixed_mask = pointer(input.fixed_mask);
     if (c == 0) channel.moving_mask = pointer(input.moving_mask);
-    channel.metric = metric_of<Dim>(options.metric_of(c));
+    channel.metric = metric_named<Dim>(options.metric_of(c));
     channel.weight = options.weight_of(c);
     channels.push_back(std::move(channel));
   }
@@ -169,7 +162,7 @@ void add_spline(const RegisterOptions& options, const RegisterBasis<Dim>& basis,
                 Registration<Dim>& registration, std::map<std::string, double>& weights) {
   registration.basis(basis.basis);
   const bool rigid = basis.bodies && options.rigidity_weight() > 0;
-  if (options.is_elastic()) {
+  if (options.has_elastic_energy()) {
     weights["elastic"] = options.gamma.value_or(kDefaultElasticWeight);
     if (weights["elastic"] > 0) {
       registration.energy("elastic", weights["elastic"],
@@ -189,8 +182,8 @@ void add_spline(const RegisterOptions& options, const RegisterBasis<Dim>& basis,
 }
 
 template <int Dim>
-void add_elastic_body(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                      Registration<Dim>& registration, std::map<std::string, double>& weights) {
+void add_cauchy_navier(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                       Registration<Dim>& registration, std::map<std::string, double>& weights) {
   const Raster<Dim>& raster = input.fixed.image.raster();
   const double length = options.mesh_size.value_or(default_edge_length<Dim>(raster.bounds()));
   weights["roughness"] = options.gamma.value_or(default_roughness_weight<Dim>(length));
@@ -215,7 +208,7 @@ Registration<Dim> compose(const RegisterOptions& options, const RegisterInput<Di
   if (options.has_basis()) {
     add_spline(options, basis, registration, weights);
   } else {
-    add_elastic_body(options, input, registration, weights);
+    add_cauchy_navier(options, input, registration, weights);
   }
   if (!input.landmarks.empty()) {
     registration.landmarks(input.landmarks, landmark_options(options));
@@ -256,10 +249,10 @@ AdaptiveResult<2> run_adaptively(const RegisterOptions& options, const RegisterI
 }
 
 template <int Dim>
-RegistrationResult<Dim> run_bending(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                                    const AffineMap<Dim>& start, RegisterBasis<Dim>& basis,
-                                    RegisterOutcome<Dim>& outcome, RunReport& report,
-                                    ProgressReporter& progress) {
+RegistrationResult<Dim> run_nonrigid(const RegisterOptions& options,
+                                     const RegisterInput<Dim>& input, const AffineMap<Dim>& start,
+                                     RegisterBasis<Dim>& basis, RegisterOutcome<Dim>& outcome,
+                                     RunReport& report, ProgressReporter& progress) {
   if constexpr (Dim == 2) {
     if (options.adapt > 0) {
       AdaptiveResult<2> adapted =
@@ -272,10 +265,10 @@ RegistrationResult<Dim> run_bending(const RegisterOptions& options, const Regist
 }
 
 template <int Dim>
-RegisterOutcome<Dim> bending_outcome(const RegisterOptions& options,
-                                     const RegisterInput<Dim>& input,
-                                     const Alignment<Dim>& alignment, RunReport& report,
-                                     ProgressReporter& progress) {
+RegisterOutcome<Dim> nonrigid_outcome(const RegisterOptions& options,
+                                      const RegisterInput<Dim>& input,
+                                      const Alignment<Dim>& alignment, RunReport& report,
+                                      ProgressReporter& progress) {
   progress.report({.stage = "domain", .fraction = 0.05});
   RegisterBasis<Dim> basis;
   if (options.has_basis()) basis = make_register_basis(options, input, report);
@@ -284,7 +277,7 @@ RegisterOutcome<Dim> bending_outcome(const RegisterOptions& options,
   outcome.alignment = alignment;
   try {
     RegistrationResult<Dim> result =
-        run_bending(options, input, alignment.map, basis, outcome, report, progress);
+        run_nonrigid(options, input, alignment.map, basis, outcome, report, progress);
     for (const auto& [stage, seconds] : result.timings_s) report.add_part(stage, seconds);
     report.add_warnings(result.warnings);
     outcome.transform = result.transform;
@@ -331,7 +324,7 @@ RegisterOutcome<Dim> run_registration(const RegisterOptions& options,
   const Alignment<Dim> start = find_start(options, input, report, progress);
   report.end_stage("alignment");
   if (options.is_linear()) return affine_outcome(options, input, start);
-  return bending_outcome(options, input, start, report, progress);
+  return nonrigid_outcome(options, input, start, report, progress);
 }
 
 template RegisterOutcome<2> run_registration<2>(const RegisterOptions&, const RegisterInput<2>&,

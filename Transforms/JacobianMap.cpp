@@ -4,7 +4,6 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
-#include "Transforms/StrainMap.h"
 
 namespace crease {
 
@@ -40,11 +39,8 @@ JacobianStatistics<Dim> JacobianMap<Dim>::statistics(std::span<const std::uint8_
 }
 
 template <int Dim>
-JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster,
-                              ControlPoints<Dim>* displacement, std::vector<double>* strain) {
+JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster) {
   JacobianMap<Dim> result{raster, {}, {}};
-  if (strain) strain->resize(static_cast<std::size_t>(raster.num_samples()));
-  if (displacement) displacement->resize(Dim, raster.num_samples());
   result.determinants.resize(static_cast<std::size_t>(raster.num_samples()));
   result.in_domain.resize(result.determinants.size());
   const Vector<Dim> step = raster.index_to_point().col(0);
@@ -56,8 +52,6 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
       const auto sample = transform.sample(x);
       result.determinants[n] = sample.jacobian.determinant();
       result.in_domain[n] = sample.in_domain ? 1 : 0;
-      if (displacement) displacement->col(static_cast<Eigen::Index>(n)) = sample.point - x;
-      if (strain) (*strain)[n] = strain_norm<Dim>(sample.jacobian);
     }
   });
   return result;
@@ -65,9 +59,7 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
 
 template struct JacobianMap<2>;
 template struct JacobianMap<3>;
-template JacobianMap<2> jacobian_map(const Transform<2>&, const Raster<2>&, ControlPoints<2>*,
-                                     std::vector<double>*);
-template JacobianMap<3> jacobian_map(const Transform<3>&, const Raster<3>&, ControlPoints<3>*,
-                                     std::vector<double>*);
+template JacobianMap<2> jacobian_map(const Transform<2>&, const Raster<2>&);
+template JacobianMap<3> jacobian_map(const Transform<3>&, const Raster<3>&);
 
 }  // namespace crease

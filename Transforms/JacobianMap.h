@@ -32,12 +32,8 @@ struct JacobianMap {
 };
 
 /// In parallel, the same on any number of threads.
-/// @param displacement  not null: gets T(x) - x, a column per sample, which costs little more here.
-/// @param strain        not null: gets strain_norm() per sample.
 template <int Dim>
-JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster,
-                              ControlPoints<Dim>* displacement = nullptr,
-                              std::vector<double>* strain = nullptr);
+JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>& raster);
 
 extern template struct JacobianMap<2>;
 extern template struct JacobianMap<3>;

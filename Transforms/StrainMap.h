@@ -14,8 +14,7 @@ double strain_norm(const Matrix<Dim>& gradient) {
   return 0.5 * (gradient.transpose() * gradient - Matrix<Dim>::Identity()).norm();
 }
 
-/// strain_norm() per sample of a raster. In parallel, the same on any number of threads. With the
-/// determinants as well: jacobian_map().
+/// strain_norm() per sample of a raster. In parallel, the same on any number of threads.
 template <int Dim>
 std::vector<double> strain_map(const Transform<Dim>& transform, const Raster<Dim>& raster);
 

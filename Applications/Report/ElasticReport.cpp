@@ -2,22 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "Applications/CertificateReport.h"
-#include "Applications/EvaluationReport.h"
+#include "Applications/Report/ReportFolds.h"
 #include "Applications/Report/ReportRun.h"
+#include "Applications/Report/ReportText.h"
 #include "Registration/Elastic/StiffnessMap.h"
 
 namespace crease {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string file_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
 
 ReportMood mood_of(const std::optional<double>& percent) {
   if (!percent) return ReportMood::kPlain;
@@ -47,17 +42,10 @@ ReportHead head_of(const ElasticStory& story, const Json& result) {
     head.verdict.push_back({ReportMood::kBad, "No equilibrium: " + registration.failure});
   }
   head.verdict.push_back(improvement_statement(registration));
+  for (const auto& statement : fold_statements(story.evaluation, story.certificate)) {
+    head.verdict.push_back(statement);
+  }
   const auto& jacobian = story.evaluation.jacobian;
-  head.verdict.push_back(
-      jacobian.folded > 0
-          ? ReportHead::Statement{ReportMood::kBad,
-                                  "The map " + folding_text(jacobian, story.evaluation.samples) +
-                                      "."}
-          : ReportHead::Statement{ReportMood::kGood,
-                                  fmt::format("No folds: determinants from {:.3f} to {:.3f}.",
-                                              jacobian.minimum, jacobian.maximum)});
-  head.verdict.push_back({story.certificate.certified() ? ReportMood::kGood : ReportMood::kCaution,
-                          "Invertible: " + certificate_text(story.certificate) + "."});
   const auto& pairs = result.at("pairs");
   head.figures = {
       {"pairs", pairs.at("count").dump(),

@@ -9,7 +9,9 @@
 
 #include "Applications/CertificateReport.h"
 #include "Applications/EvaluationReport.h"
+#include "Applications/Report/ReportFolds.h"
 #include "Applications/Report/ReportRun.h"
+#include "Applications/Report/ReportText.h"
 
 namespace crease {
 namespace {
@@ -18,22 +20,6 @@ using Json = nlohmann::ordered_json;
 using Statement = ReportHead::Statement;
 
 constexpr double kRoundingMm = 1e-9;
-
-/// With a minus sign for a hyphen in front.
-std::string with_sign(const std::string& text) {
-  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
-}
-
-std::string short_text(double value) { return with_sign(fmt::format("{:.4g}", value)); }
-
-/// With narrow spaces between the thousands.
-std::string count_text(std::int64_t count) {
-  std::string text = std::to_string(count);
-  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) {
-    text.insert(static_cast<std::size_t>(at), "\u202f");
-  }
-  return text;
-}
 
 std::string number_text(double value, int decimals) {
   return with_sign(fmt::format("{:.{}f}", value, decimals));
@@ -51,10 +37,6 @@ std::string point_text(const Vector& p) {
   std::string text;
   for (Eigen::Index a = 0; a < p.size(); ++a) text += (a > 0 ? ", " : "") + number_text(p[a], 2);
   return text;
-}
-
-std::string file_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
 }
 
 Statement status_of(const std::string& status) {
@@ -78,38 +60,6 @@ Statement match_statement(const RegisterStory<Dim>& story) {
     text += fmt::format(", correlation {:.4f} \u2192 {:.4f}", match->ncc_before, match->ncc_after);
   }
   return {ReportMood::kGood, text + "."};
-}
-
-/// What the samples show, and what is certified between them.
-template <int Dim>
-std::vector<Statement> fold_statements(const RegisterStory<Dim>& story) {
-  const auto& jacobian = story.evaluation.jacobian;
-  std::vector<Statement> statements;
-  if (jacobian.folded > 0) {
-    std::string text = folding_text(jacobian, story.evaluation.samples) + ".";
-    text.front() = 'T';  // "the map folds ..."
-    statements.push_back({ReportMood::kBad, text});
-  } else {
-    statements.push_back({ReportMood::kGood,
-                          fmt::format("No folds at {} samples: determinants from {} to {}.",
-                                      count_text(story.evaluation.samples),
-                                      short_text(jacobian.minimum), short_text(jacobian.maximum))});
-  }
-  const std::string text = "Invertible: " + certificate_text(story.certificate) + ".";
-  switch (story.certificate.verdict) {
-    case Invertibility::kCertified:
-      statements.push_back({ReportMood::kGood, text});
-      break;
-    case Invertibility::kFolded:
-      statements.push_back({ReportMood::kBad, text});
-      break;
-    case Invertibility::kUndecided:
-      statements.push_back({ReportMood::kCaution, text});
-      break;
-    case Invertibility::kNotCertifiable:
-      break;
-  }
-  return statements;
 }
 
 Statement landmark_statement(const Json& landmarks, bool exact) {
@@ -179,7 +129,8 @@ ReportHead head_of(const RegisterStory<Dim>& story) {
   }
   head.status = status_of(story.result.at("status"));
   head.verdict = {match_statement(story)};
-  for (const auto& statement : fold_statements(story)) head.verdict.push_back(statement);
+  for (const auto& statement : fold_statements(story.evaluation, story.certificate))
+    head.verdict.push_back(statement);
   if (!story.input.landmarks.empty()) {
     head.verdict.push_back(
         landmark_statement(story.result.at("landmarks"), story.options.landmarks_mode == "exact"));

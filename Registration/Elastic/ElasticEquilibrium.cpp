@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Registration/Elastic/ElasticPairs.h"
+
 namespace crease {
 namespace {
 
@@ -18,8 +20,6 @@ DampedSolver make_solver(LinearSolver kind, Eigen::Index columns) {
   options.kind = kind;
   return {options, columns};
 }
-
-std::string place_text(const Point<2>& p) { return message("(", p.x(), ", ", p.y(), ") mm"); }
 
 }  // namespace
 

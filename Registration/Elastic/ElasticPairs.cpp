@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "Core/Error.h"
 #include "Transforms/Domains/MeshTopology.h"
@@ -13,10 +15,8 @@
 namespace crease {
 namespace {
 
-std::string place_text(const Point<2>& p) { return message("(", p.x(), ", ", p.y(), ") mm"); }
-
 /// The border of a mesh as closed polygons, the domain on the left.
-std::vector<std::vector<Point<2>>> border_rings(const SimplexMesh<2>& mesh) {
+std::vector<Polyline> border_rings(const SimplexMesh<2>& mesh) {
   const MeshTopology topology(mesh);
   std::vector<int> next(mesh.vertices.size(), -1);
   for (const auto& edge : topology.edges()) {
@@ -27,9 +27,9 @@ std::vector<std::vector<Point<2>>> border_rings(const SimplexMesh<2>& mesh) {
       if (std::minmax(a, b) == std::minmax(edge.vertices[0], edge.vertices[1])) next[a] = b;
     }
   }
-  std::vector<std::vector<Point<2>>> rings;
+  std::vector<Polyline> rings;
   for (std::size_t first = 0; first < next.size(); ++first) {
-    std::vector<Point<2>> ring;
+    Polyline ring;
     for (int v = static_cast<int>(first); next[v] >= 0;) {
       ring.push_back(mesh.vertices[v]);
       v = std::exchange(next[v], -1);
@@ -45,26 +45,18 @@ struct RingPlace {
   double arc = 0;  // length along the ring
 };
 
-RingPlace nearest_on(const std::vector<Point<2>>& ring, const Point<2>& p) {
+RingPlace nearest_on(const Polyline& ring, const Point<2>& p) {
   RingPlace nearest;
   double arc = 0;
   for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Point<2>& a = ring[k];
-    const Vector<2> side = ring[(k + 1) % ring.size()] - a;
-    const double t = std::clamp((p - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
-    const double distance = (a + t * side - p).norm();
-    if (distance < nearest.distance) nearest = {distance, arc + t * side.norm()};
-    arc += side.norm();
+    const Point<2>&a = ring[k], &b = ring[(k + 1) % ring.size()];
+    const Point<2> q = closest_point_on_segment(p, a, b);
+    if (const double distance = (q - p).norm(); distance < nearest.distance) {
+      nearest = {distance, arc + (q - a).norm()};
+    }
+    arc += (b - a).norm();
   }
   return nearest;
-}
-
-double length_of(const std::vector<Point<2>>& ring) {
-  double length = 0;
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    length += (ring[(k + 1) % ring.size()] - ring[k]).norm();
-  }
-  return length;
 }
 
 /// Whether the segments a b and c d cross in inner points of both.
@@ -95,10 +87,9 @@ void check_row(const std::vector<Point<2>>& points, const std::vector<int>& cont
   }
 }
 
-/// Angle from the direction a b to the direction b c, -pi to pi.
+/// Angle from the direction a b to the direction b c.
 double turn_at(const std::vector<Point<2>>& points, int a, int b, int c) {
-  const Vector<2> in = points[b] - points[a], out = points[c] - points[b];
-  return std::atan2(cross(in, out), in.dot(out));
+  return turn_angle(points[b] - points[a], points[c] - points[b]);
 }
 
 /// The part of every control point: those of one part are joined by couplings.
@@ -138,8 +129,8 @@ std::vector<std::string> snap_to_domain(Landmarks<2>& pairs, const SplineBasis<2
   return warnings;
 }
 
-std::vector<std::vector<int>> contour_pairs(const Landmarks<2>& pairs, const SplineBasis<2>& basis,
-                                            double near_mm) {
+std::vector<std::vector<int>> pairs_along_border(const Landmarks<2>& pairs,
+                                                 const SplineBasis<2>& basis, double near_mm) {
   const auto* triangular = dynamic_cast<const TriangularBSplineBasis<2>*>(&basis);
   if (triangular == nullptr) return {};
   struct Place {
@@ -156,7 +147,7 @@ std::vector<std::vector<int>> contour_pairs(const Landmarks<2>& pairs, const Spl
     if (places.size() < 2) continue;
     std::ranges::sort(places, {}, &Place::arc);
     std::size_t begin = 0;
-    double widest = places.front().arc + length_of(ring) - places.back().arc;
+    double widest = places.front().arc + polyline_length(ring, true) - places.back().arc;
     for (std::size_t k = 1; k < places.size(); ++k) {
       const double gap = places[k].arc - places[k - 1].arc;
       if (gap > widest) begin = k, widest = gap;

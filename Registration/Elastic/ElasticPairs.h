@@ -3,10 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "Core/Error.h"
 #include "Registration/Landmarks.h"
 #include "Transforms/Splines/SplineBasis.h"
 
 namespace crease {
+
+/// As "(12.5, 3) mm", for messages.
+inline std::string place_text(const Point<2>& p) {
+  return message("(", p.x(), ", ", p.y(), ") mm");
+}
 
 /// Moves fixed points that lie outside the domain, but within `snap_mm` of it, onto its border.
 /// @return a warning for each.
@@ -16,8 +22,8 @@ std::vector<std::string> snap_to_domain(Landmarks<2>& pairs, const SplineBasis<2
 
 /// Pairs whose fixed points lie within `near_mm` of the border of a domain of triangles, in order along it:
 /// one row per border ring, begun behind its widest gap. None for other bases.
-std::vector<std::vector<int>> contour_pairs(const Landmarks<2>& pairs, const SplineBasis<2>& basis,
-                                            double near_mm);
+std::vector<std::vector<int>> pairs_along_border(const Landmarks<2>& pairs,
+                                                 const SplineBasis<2>& basis, double near_mm);
 
 /// Checks that neither the fixed nor the moving points of a row of contour pairs, joined in their order,
 /// cross: the map between them would fold.

@@ -22,11 +22,11 @@ struct ImageImprovement::State {
   double before = 0;  // half the integral of squared differences
   bool equal = false;
 
-  double difference(std::shared_ptr<const Interpolator<2>> moving,
-                    const ControlPoints<2>& phi) const {
+  double difference(std::shared_ptr<const Interpolator<2>> moving, const ControlPoints<2>& phi,
+                    const AffineMap<2>& affine) const {
     MetricInput<2> seen = input;
     seen.moving = std::move(moving);
-    ImageTerm<2> term(grid, std::make_shared<SumOfSquaredDifferences<2>>(std::move(seen)), {});
+    ImageTerm<2> term(grid, std::make_shared<SumOfSquaredDifferences<2>>(std::move(seen)), affine);
     return term.evaluate(phi, 1, nullptr, nullptr);
   }
 };
@@ -47,7 +47,8 @@ ImageImprovement::ImageImprovement(Image<float, 2> fixed, const Image<float, 2>&
   measure *= fixed.raster().sample_volume();
   s.input.fixed = std::move(fixed);
   s.input.moving = std::make_shared<CubicBSplineInterpolator<2>>(moving);
-  s.before = s.difference(s.input.moving, ControlPoints<2>::Zero(2, s.grid->num_control_points()));
+  s.before =
+      s.difference(s.input.moving, ControlPoints<2>::Zero(2, s.grid->num_control_points()), {});
   s.equal = s.before <= kRounding * unit * unit * measure;
 }
 
@@ -61,12 +62,12 @@ std::optional<double> ImageImprovement::percent(const SplineTransform<2>& deform
   if (s.equal) return std::nullopt;
   double after = 0;
   if (refinement == nullptr) {
-    after = s.difference(s.input.moving, deformation.control_points());
+    after = s.difference(s.input.moving, deformation.control_points(), deformation.affine());
   } else {
     auto samples = sample_displacement(deformation, *s.grid);
     after = s.difference(
         std::make_shared<DisplacedInterpolator<2>>(s.input.moving, std::move(samples.components)),
-        refinement->control_points());
+        refinement->control_points(), refinement->affine());
   }
   return 100 * (s.before - after) / s.before;
 }

@@ -180,7 +180,7 @@ LoadStepResult deform_elastically(const ElasticDeformation& deformation,
   pairs.sigma_mm.clear();  // all are met exactly
   std::vector<std::string> warnings = snap_to_domain(pairs, basis, options.snap_mm);
   const auto contours = deformation.contour.empty()
-                            ? contour_pairs(pairs, basis, options.snap_mm)
+                            ? pairs_along_border(pairs, basis, options.snap_mm)
                             : std::vector<std::vector<int>>{deformation.contour};
   for (const auto& contour : contours) check_no_crossing(pairs, contour);
   warn_of_locking(deformation, warnings);

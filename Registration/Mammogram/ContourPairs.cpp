@@ -51,14 +51,16 @@ void check(const Polyline& fixed, const Polyline& moving, const ContourPairOptio
     }
   }
   if (!options.stretch) return;
+  constexpr double kRounding = 1e-9;
+  const double first = options.stretch(0), end = options.stretch(1);
+  bool good = std::abs(first) <= kRounding && std::abs(end - 1) <= kRounding;
   double last = -1;
   for (int k = 0; k < options.count; ++k) {
     const double h = options.stretch(k / double(options.count - 1));
-    if (!(h > last) || h < -1e-9 || h > 1 + 1e-9) {
-      throw InvalidInput("contour pairs: the stretch must grow from 0 to 1.");
-    }
+    good = good && h > last && h >= -kRounding && h <= 1 + kRounding;
     last = h;
   }
+  if (!good) throw InvalidInput("contour pairs: the stretch must grow from 0 to 1.");
 }
 
 /// Shares of the two contours that correspond.

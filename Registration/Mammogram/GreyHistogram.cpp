@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBins = GreyHistogram::kBins;
 
-/// Grey values counted on a fine even grid: values[k] pixels have the grey value lower + k * step.
+/// Grey values counted on a fine even grid: counts[k] pixels have the grey value lower + k * step.
 struct FineCounts {
   double lower = 0, step = 1;
   std::vector<double> counts;

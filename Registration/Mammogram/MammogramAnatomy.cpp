@@ -11,17 +11,6 @@
 namespace crease {
 namespace {
 
-/// Gives every step the image's name and the user's wishes.
-MammogramOptions completed(MammogramOptions options, const MammogramFrame* frame) {
-  options.frame.name = options.breast.name = options.skin.name = options.name;
-  options.skin.force = options.skin.force || options.force;
-  if (options.threshold && frame) {
-    options.breast.threshold =
-        frame->inverted ? frame->value_sum - *options.threshold : *options.threshold;
-  }
-  return options;
-}
-
 /// The breast's outline: the skin line, closed by the border along the frame. Where the two cross, the
 /// border's points near the skin line's ends are left out.
 Polyline closed_outline(const SkinContour& skin) {
@@ -44,9 +33,15 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
 }  // namespace
 
 MammogramAnatomy analyse_mammogram(const Image<float, 2>& image, const MammogramOptions& wishes) {
+  MammogramOptions options = wishes;  // every step gets the image's name and the user's wishes
+  options.frame.name = options.breast.name = options.skin.name = options.name;
+  options.skin.force = options.skin.force || options.force;
   MammogramAnatomy anatomy;
-  anatomy.frame = find_frame(image, completed(wishes, nullptr).frame);
-  const MammogramOptions options = completed(wishes, &anatomy.frame);
+  anatomy.frame = find_frame(image, options.frame);
+  if (options.threshold) {
+    options.breast.threshold =
+        anatomy.frame.inverted ? anatomy.frame.value_sum - *options.threshold : *options.threshold;
+  }
   anatomy.breast = options.mask ? segmentation_of_mask(mask_in_frame(*options.mask, anatomy.frame),
                                                        options.breast)
                                 : segment_breast(anatomy.frame.image, options.breast);

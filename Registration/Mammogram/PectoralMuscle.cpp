@@ -121,8 +121,10 @@ Polyline smoothed(const View& view, const Polyline& path, const PectoralOptions&
   const auto back = std::min<std::size_t>(points.size() - 1, 5);
   const Vector<2> up = (points.front() - points[back]).normalized();
   const Vector<2> down = (points.back() - points[points.size() - 1 - back]).normalized();
-  points.insert(points.begin(), at_border(view, points.front(), up));
-  points.push_back(at_border(view, points.back(), down));
+  const Point<2> upper = at_border(view, points.front(), up);
+  const Point<2> lower = at_border(view, points.back(), down);
+  if (upper != points.front()) points.insert(points.begin(), upper);
+  if (lower != points.back()) points.push_back(lower);
   return points;
 }
 

@@ -139,7 +139,12 @@ std::vector<Bump> bumps(const std::vector<double>& values, double median, double
 
 SkinContour smooth_contour(const Polyline& points, const SkinContourOptions& options) {
   const double length = polyline_length(points, false);
-  if (points.size() < 24 || (length < options.shortest_mm && !options.force)) {
+  constexpr std::size_t kFewestPoints = 24;
+  if (points.size() < kFewestPoints) {
+    throw InvalidInput(message(options.name, ": the skin contour has only ", points.size(),
+                               " points, less than ", kFewestPoints, "; check the breast's mask."));
+  }
+  if (length < options.shortest_mm && !options.force) {
     throw InvalidInput(message(
         options.name, ": the skin contour is only ", std::lround(length), " mm long, less than ",
         options.shortest_mm, " mm; check the breast's mask, or go on all the same with --force."));
@@ -176,6 +181,7 @@ std::optional<Nipple> find_nipple(const Polyline& points, const SkinContourOptio
   std::vector<double> deviations;
   for (const double c : outward) deviations.push_back(std::abs(c - median));
   const double sigma = 1.4826 * quantile(deviations, 0.5);
+  if (!(sigma > 0)) return std::nullopt;  // an even contour has no bump
   std::optional<Nipple> nipple;
   constexpr double kEnds = 0.05;  // of the length: there the film's edge bends the contour
   for (const Bump& bump : bumps(outward, median, options.nipple_deviations * sigma)) {

@@ -19,7 +19,6 @@ enum class MammogramStream {
   kDevelopment,  ///< gain and gamma of the moving image
   kFixedNoise,
   kMovingNoise,
-  kElastic,
   kBranches = 201,  ///< what grows from each of eight ducts
   kOtherBranches = 301
 };

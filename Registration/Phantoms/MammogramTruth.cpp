@@ -112,9 +112,9 @@ Landmarks<2> mammogram_landmarks(const MammogramImage& fixed, const MammogramIma
   add_visible({"nipple", fixed.nipple, moving.nipple});
   for (const DuctMark& mark : fixed.marks) {
     if (mark.crossing) continue;
-    const auto same = std::find_if(moving.marks.begin(), moving.marks.end(), [&](const auto& m) {
-      return m.name == mark.name && m.position == map(mark.position);
-    });
+    // Ducts that one breast alone has are numbered apart: equal names mean the same fork.
+    const auto same = std::find_if(moving.marks.begin(), moving.marks.end(),
+                                   [&](const auto& m) { return m.name == mark.name; });
     if (same == moving.marks.end()) continue;
     add_visible({mark.name, mark.position, same->position, line_angle(mark.angles_rad[0]),
                  line_angle(same->angles_rad[0])});

@@ -83,7 +83,8 @@ PowerLawTexture<Dim>::PowerLawTexture(double period_mm, double exponent, double 
       prefilter *= 3 / (2 + std::cos(kTwoPi * f));
     }
     const Complex z(random.normal(), random.normal());
-    if (f2 == 0 || f2 < lowest_frequency * lowest_frequency) continue;  // mean 0
+    if (f2 == 0 || f2 < lowest_frequency * lowest_frequency)
+      continue;  // mean 0, and nothing below the lowest frequency
     const double blur = kTwoPi * blur_mm;
     const double amplitude = std::pow(f2, -0.5 * exponent) * std::exp(-0.5 * blur * blur * f2);
     variance += amplitude * amplitude * std::norm(z) / 2;

@@ -31,23 +31,5 @@ TEST(Command, EverySubcommandExplainsItselfWithAnExample) {
   }
 }
 
-// What later versions will know is refused now, never ignored.
-TEST(Command, RefusesWhatBelongsToLaterVersions) {
-  const std::vector<std::string> base = {"register", "--fixed", "a", "--moving", "b", "-o", "c"};
-  for (const auto& extra : std::vector<std::vector<std::string>>{{"--orientations", "exact"},
-                                                                 {"--slide-labels", "l.mha"},
-                                                                 {"--transform", "demons"},
-                                                                 {"--transform", "syn"}}) {
-    auto arguments = base;
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    const auto run = run_crease(arguments);
-    EXPECT_EQ(run.code, 2) << ::testing::PrintToString(extra);
-    EXPECT_THAT(run.err, HasSubstr("unknown"));
-  }
-  for (const char* name : {"mammogram", "shell", "solid"}) {
-    EXPECT_EQ(run_crease({name}).code, 2);
-  }
-}
-
 }  // namespace
 }  // namespace crease

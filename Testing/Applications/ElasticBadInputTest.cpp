@@ -24,6 +24,10 @@ TEST_F(ElasticBadInput, OptionsOutOfRange) {
   expect_refused(run({"--alpha", "1", "--alpha-relative", "2"}), 2, {"alpha"});
   expect_refused(run({"--damped-step", "0.1"}), 2, {"--refinement damped"});
   expect_refused(run({"--no-refine", "--metric", "mi"}), 2, {"--no-refine"});
+  expect_refused(run({"--no-refine", "--levels", "2"}), 2, {"--levels", "--no-refine"});
+  expect_refused(run({"--no-refine", "--smoothing", "1"}), 2, {"--smoothing", "--no-refine"});
+  expect_refused(run({"--mirror", "yes"}), 2, {"--mirror", "mammograms"});
+  expect_refused(run({"--threshold", "7"}), 2, {"--threshold", "mammograms"});
   expect_refused(run({"--corrector", "none", "--steps", "adaptive"}), 2, {"--corrector newton"});
 }
 

@@ -1,6 +1,7 @@
 // `crease elastic` on a small phantom: what it writes, and that this depends on its input alone.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -16,26 +17,15 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::read_result;
 using testing::read_text;
+using testing::run_crease;
 
-class ElasticCommand : public testing::ElasticFixture {
- protected:
-  std::set<std::string> files() const {
-    std::set<std::string> names;
-    const auto root = folder / "out";
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
-      if (entry.is_regular_file()) {
-        names.insert(std::filesystem::relative(entry.path(), root).string());
-      }
-    }
-    return names;
-  }
-};
+class ElasticCommand : public testing::ElasticFixture {};
 
 TEST_F(ElasticCommand, WritesEverythingAndNothingElse) {
   const auto run = this->run({"--truth", file("truth.mha")});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.err, "");  // --quiet
-  EXPECT_EQ(files(),
+  EXPECT_EQ(files_in(folder / "out"),
             (std::set<std::string>{
                 "config.toml", "displacement.mha", "jacobian.mha", "pairs.csv",
                 "pictures/checkerboard.png", "pictures/difference.png", "pictures/fixed.png",
@@ -207,6 +197,38 @@ TEST_F(ElasticCommand, AKilledRunLeavesNoResult) {
   } else {
     EXPECT_TRUE(killed);
   }
+}
+
+/// Forks of ducts as pairs, without the skin's: these are found in the images.
+void write_forks(const std::string& landmarks, const std::string& to) {
+  std::ifstream all(landmarks);
+  std::ofstream forks(to);
+  for (std::string line; std::getline(all, line);) {
+    if (line.find("contour") == std::string::npos && line.find("nipple") == std::string::npos) {
+      forks << line << '\n';
+    }
+  }
+}
+
+// Given pairs have directions, those along the skin have none: none are written.
+TEST_F(ElasticCommand, FindsThePairsAlongTheSkinOfMammograms) {
+  const auto in = [&](const char* name) { return (folder / name).string(); };
+  ASSERT_EQ(run_crease({"phantom", "mammogram", "--seed", "3", "--size", "256", "--output",
+                        folder.path().string(), "--quiet"})
+                .code,
+            0);
+  write_forks(in("landmarks.csv"), in("forks.csv"));
+  const auto finished = run_crease({"elastic", "--fixed", in("fixed.mha"), "--moving",
+                                    in("moving.mha"), "--pairs", in("forks.csv"), "--contour-pairs",
+                                    "7", "--no-refine", "--output", output(), "--quiet"});
+  const auto result = result_of(finished);
+  EXPECT_EQ(result["pairs"]["contour"], 7);
+  EXPECT_GT(result["pairs"]["given"], 10);
+  EXPECT_TRUE(result["breast"]["pectoral_muscle"].get<bool>());
+  const auto pairs = read_landmarks<2>(folder / "out/pairs.csv");
+  EXPECT_EQ(pairs.size(), result["pairs"]["count"].get<int>());
+  EXPECT_TRUE(pairs.fixed_angle.empty());
+  EXPECT_TRUE(pairs.moving_angle.empty());
 }
 
 }  // namespace

@@ -1,24 +1,19 @@
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "Images/ImageFile.h"
-#include "Registration/Phantoms/Phantom.h"
-#include "Testing/Applications/CommandRunner.h"
-#include "Testing/TemporaryFolder.h"
+#include "Testing/Applications/CommandFixture.h"
 
 namespace crease::testing {
 
 /// A small phantom whose whole image is the elastic body, true pairs on it, and a short way to register them.
-class ElasticFixture : public ::testing::Test {
+class ElasticFixture : public CommandFixture {
  protected:
+  ElasticFixture() : CommandFixture("elastic") {}
+
   static constexpr int kSize = 64;
 
   static void SetUpTestSuite() {
@@ -27,9 +22,7 @@ class ElasticFixture : public ::testing::Test {
     options.size = kSize;
     options.noise = 0;
     const Phantom phantom = make_phantom("blobs", options);
-    write_image(*files_ / "fixed.mha", phantom.fixed, PixelType::kFloat);
-    write_image(*files_ / "moving.mha", phantom.moving, PixelType::kFloat);
-    write_displacement_field(*files_ / "truth.mha", phantom.displacement);
+    write_phantom(*files_, phantom);
     LabelImage<2> labels(phantom.fixed.raster());
     for (int j = 26; j < 38; ++j) {  // between the pairs
       for (int i = 26; i < 38; ++i) labels(i, j) = 1;
@@ -40,7 +33,6 @@ class ElasticFixture : public ::testing::Test {
   static void TearDownTestSuite() { files_.reset(); }
 
   static std::string file(const std::string& name) { return (*files_ / name).string(); }
-  std::string output() const { return (folder / "out").string(); }
 
   /// `crease elastic` of the two images with a coarse mesh and few steps.
   CommandResult run(const std::vector<std::string>& extra = {}) const {
@@ -58,7 +50,7 @@ class ElasticFixture : public ::testing::Test {
     add_default("--roi", "image");
     add_default("--pairs", file("pairs.csv"));
     add_default("--steps", "2");
-    add_default("--levels", "2");
+    if (std::ranges::find(extra, "--no-refine") == extra.end()) add_default("--levels", "2");
     if (std::ranges::find(extra, "--mesh-size") == extra.end()) add_default("--triangles", "80");
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     return run_crease(arguments);
@@ -66,23 +58,8 @@ class ElasticFixture : public ::testing::Test {
 
   /// The result.json of a run that must succeed.
   nlohmann::json registered(const std::vector<std::string>& extra = {}) const {
-    const auto finished = run(extra);
-    EXPECT_EQ(finished.code, 0) << finished.err;
-    return read_result(output());
+    return result_of(run(extra));
   }
-
-  /// Expects that code, one line on the error stream with these texts, and no result.
-  void expect_refused(const CommandResult& run, int code,
-                      const std::vector<std::string>& texts) const {
-    EXPECT_EQ(run.code, code) << run.err;
-    EXPECT_THAT(run.err, ::testing::StartsWith("crease elastic: "));
-    for (const auto& text : texts) EXPECT_THAT(run.err, ::testing::HasSubstr(text));
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(folder / "out/result.json"));
-  }
-
-  TemporaryFolder folder;
 
  private:
   /// 16 true pairs.

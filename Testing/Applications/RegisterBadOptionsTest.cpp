@@ -72,8 +72,10 @@ TEST_F(RegisterBadOptions, OptionsOfLaterVersionsAreUnknown) {
     expect_refused(run({option, "exact"}), 2,
                    {std::string("the option ") + option + " is unknown"});
   }
-  expect_refused(run({"--transform", "demons"}), 2,
-                 {"--transform: \"demons\" is unknown", "It takes "});
+  for (const char* transform : {"demons", "syn"}) {
+    expect_refused(run({"--transform", transform}), 2,
+                   {std::string("--transform: \"") + transform + "\" is unknown", "It takes "});
+  }
   for (const char* command : {"mammogram", "shell", "solid"}) {
     const auto refused = testing::run_crease({command, "--output", output()});
     EXPECT_EQ(refused.code, 2);

@@ -17,15 +17,6 @@ using testing::read_text;
 
 class RegisterCommand : public testing::RegisterFixture {
  protected:
-  std::set<std::string> files(const std::filesystem::path& path) const {
-    std::set<std::string> names;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
-      if (entry.is_regular_file()) {
-        names.insert(std::filesystem::relative(entry.path(), path).string());
-      }
-    }
-    return names;
-  }
   /// Mean distance of the result from the phantom's truth, mm, four pixels away from the border.
   double mean_error() const {
     const auto found = read_displacement_field<2>(folder / "out/displacement.mha");
@@ -46,7 +37,7 @@ TEST_F(RegisterCommand, WritesEverythingAndNothingElse) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.err, "");  // --quiet
   EXPECT_EQ(
-      files(folder / "out"),
+      files_in(folder / "out"),
       (std::set<std::string>{"config.toml", "displacement.mha", "jacobian.mha",
                              "pictures/checkerboard.png", "pictures/difference.png",
                              "pictures/fixed.png", "pictures/grid.png", "pictures/jacobian.png",
@@ -166,7 +157,7 @@ TEST_F(RegisterCommand, ThreadsAndVerbosityChangeNoByte) {
     ASSERT_EQ(run(arguments).code, 0);
     EXPECT_EQ(read_result(output())["threads"], std::stoi(threads));
     std::vector<std::pair<std::string, std::string>> contents;
-    for (const std::string& name : files(folder / "out")) {
+    for (const std::string& name : files_in(folder / "out")) {
       if (name == "result.json") continue;
       std::string text = read_text(folder / "out" / name);
       if (name == "report.html") {  // but for times, memory and the number of threads
@@ -221,7 +212,7 @@ TEST_F(RegisterCommand, KilledRunsLeaveNoResult) {
   // The next run finds what was left, and leaves nothing of it.
   ASSERT_EQ(run({"--levels", "1"}).code, 0);
   EXPECT_TRUE(std::filesystem::exists(result));
-  for (const std::string& name : files(folder / "out")) {
+  for (const std::string& name : files_in(folder / "out")) {
     EXPECT_EQ(name.find(".crease-"), std::string::npos) << name;
   }
 }

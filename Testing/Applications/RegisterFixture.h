@@ -1,36 +1,29 @@
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
+#include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "Images/ImageFile.h"
-#include "Registration/Phantoms/Phantom.h"
-#include "Testing/Applications/CommandRunner.h"
-#include "Testing/TemporaryFolder.h"
+#include "Testing/Applications/CommandFixture.h"
 
 namespace crease::testing {
 
 /// Small images of a phantom without bodies on disk, and a short way to register them.
-class RegisterFixture : public ::testing::Test {
+class RegisterFixture : public CommandFixture {
  protected:
+  RegisterFixture() : CommandFixture("register") {}
+
   static void SetUpTestSuite() {
     images_ = std::make_unique<TemporaryFolder>();
     PhantomOptions options;
     options.size = 64;
     const Phantom phantom = make_phantom("blobs", options);
-    write_image(*images_ / "fixed.mha", phantom.fixed, PixelType::kFloat);
-    write_image(*images_ / "moving.mha", phantom.moving, PixelType::kFloat);
-    write_displacement_field(*images_ / "truth.mha", phantom.displacement);
+    write_phantom(*images_, phantom);
   }
   static void TearDownTestSuite() { images_.reset(); }
 
   static std::string image(const std::string& name) { return (*images_ / name).string(); }
-  std::string output() const { return (folder / "out").string(); }
 
   /// `crease register` of the two images with a coarse mesh.
   CommandResult run(const std::vector<std::string>& extra = {}) const {
@@ -54,23 +47,8 @@ class RegisterFixture : public ::testing::Test {
 
   /// The result.json of a run that must succeed.
   nlohmann::json registered(const std::vector<std::string>& extra) const {
-    const auto finished = run(extra);
-    EXPECT_EQ(finished.code, 0) << finished.err;
-    return read_result(output());
+    return result_of(run(extra));
   }
-
-  /// Expects that code, one line on the error stream with these texts, and no result.
-  void expect_refused(const CommandResult& run, int code,
-                      const std::vector<std::string>& texts) const {
-    EXPECT_EQ(run.code, code) << run.err;
-    EXPECT_THAT(run.err, ::testing::StartsWith("crease register: "));
-    for (const auto& text : texts) EXPECT_THAT(run.err, ::testing::HasSubstr(text));
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(folder / "out/result.json"));
-  }
-
-  TemporaryFolder folder;
 
  private:
   static inline std::unique_ptr<TemporaryFolder> images_;

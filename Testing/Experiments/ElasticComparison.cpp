@@ -40,7 +40,7 @@ Point<2> contour_point(double theta) {
 }
 
 DomainMesh breast_mesh(int num_triangles) {
-  constexpr double kQuarter = 1.5707963267948966;
+  constexpr double kQuarter = std::numbers::pi / 2;
   Polyline ring;
   for (const Point<2>& p : skin_line(-kQuarter, kQuarter, 160)) ring.push_back(mm(p));
   FeatureLine edge;
@@ -82,7 +82,7 @@ Landmarks<2> pairs_of(std::vector<Point<2>> fixed,
   return pairs;
 }
 
-/// A sum of squares and what goes with it.
+/// Squared errors of the map and squared differences of the images, summed over pixels.
 struct Sums {
   double all = 0, band = 0, largest = 0, before = 0, after = 0;
   double num_all = 0, num_band = 0;
@@ -101,9 +101,9 @@ struct Outcome {
 };
 
 /// Greys of the fixed breast at a place in mm.
-class Picture {
+class BreastGreys {
  public:
-  explicit Picture(std::uint64_t seed) : tissue_({.seed = seed, .size = 1024}) {}
+  explicit BreastGreys(std::uint64_t seed) : tissue_({.seed = seed, .size = 1024}) {}
   double operator()(const Point<2>& x) const {
     const Point<2> p = x / kMammogramWidthMm;
     const double depth = skin_depth(p);
@@ -116,8 +116,8 @@ class Picture {
 
 /// The template at y, which shows the fixed breast, carried by the truth. Beyond the skin the truth goes on in
 /// kinks, where it need not have an inverse: there is film.
-double template_grey(const Picture& picture, const MammogramDeformation& truth, const Point<2>& y,
-                     const Point<2>& start) {
+double template_grey(const BreastGreys& picture, const MammogramDeformation& truth,
+                     const Point<2>& y, const Point<2>& start) {
   try {
     return picture(truth.inverse(y, start));
   } catch (const SolverError&) {
@@ -127,7 +127,7 @@ double template_grey(const Picture& picture, const MammogramDeformation& truth, 
 
 /// Looks at points 1 mm apart in the breast.
 Outcome compare(const ElasticDeformation& body, const LoadStepResult& result,
-                const MammogramDeformation& truth, const Picture& picture) {
+                const MammogramDeformation& truth, const BreastGreys& picture) {
   const SplineTransform<2> map = transform_of(body, result);
   const int size = static_cast<int>(kMammogramWidthMm);
   const Sums sums = parallel_sum(
@@ -189,7 +189,7 @@ class Comparison {
   }
 
   void add(int seed, const MammogramDeformation& truth, std::vector<Threshold>& thresholds) {
-    const Picture picture(static_cast<std::uint64_t>(seed));
+    const BreastGreys picture(static_cast<std::uint64_t>(seed));
     Json of_seed = {{"seed", seed}};
     double band[3];
     for (Variant variant : {kCreases, kNoCreases, kLagrange}) {

@@ -87,7 +87,7 @@ TEST_P(MammogramPairs, DisplacementHoldsTheTruth) {
   }
 }
 
-// Far more seeds than are ever looked at, and on points that are no grid points of the phantom's own check.
+// More seeds than other tests look at, and on points that are no grid points of the phantom's own check.
 TEST_P(MammogramPairs, TissueIsNeverSqueezedBelowFourTenths) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     auto small = options(seed);

@@ -13,14 +13,14 @@ namespace {
 class Tables {
  public:
   std::shared_ptr<const Eigen::MatrixXd> shared(Eigen::MatrixXd table) {
-    const auto [first, last] = known_.equal_range(hash(table));
+    const std::uint64_t key = hash(table);
+    const auto [first, last] = known_.equal_range(key);
     for (auto it = first; it != last; ++it) {
       const Eigen::MatrixXd& other = *it->second;
       if (other.rows() == table.rows() && other.cols() == table.cols() && other == table) {
         return it->second;
       }
     }
-    const std::uint64_t key = hash(table);
     auto kept = std::make_shared<const Eigen::MatrixXd>(std::move(table));
     known_.emplace(key, kept);
     return kept;

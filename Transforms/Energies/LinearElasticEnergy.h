@@ -12,8 +12,8 @@ namespace crease {
 ///
 ///     E(v) = 1/2 a(v, v),   a(v, v) = int lambda (div v)^2 + 2 mu |eps|^2 dx,   eps = 1/2 (grad v + grad v^T),
 ///
-/// with Lame's parameters by region. Quadratic: one sparse matrix, assembled once, exactly. Zero for
-/// shifts and infinitesimal rotations, so that constraints must hold the body.
+/// with Lame's parameters by region: the nonlinear ElasticEnergy's second derivative at rest, assembled
+/// once, exactly. Zero for shifts and infinitesimal rotations, so that constraints must hold the body.
 ///
 /// The affine part of a transform has no strain here: v is measured from it.
 /// Source: dissertation, (4.9).
@@ -21,7 +21,7 @@ template <int Dim>
 class LinearElasticEnergy final : public Energy<Dim> {
  public:
   /// The material's law and mean dilatation do not matter.
-  /// @throws InvalidInput as lame_parameters(), of every region that the basis has.
+  /// @throws InvalidInput as ElasticEnergy.
   LinearElasticEnergy(const SplineBasis<Dim>& basis, const ElasticMaterial& material);
 
   /// (Dim n)^2, lower triangle: block (i, k) is

@@ -65,7 +65,7 @@ TEST(ElasticPairs, FindTheContourAndItsOrder) {
   auto& pairs = deformation.pairs;
   std::swap(pairs.fixed[2], pairs.fixed[9]);
   std::swap(pairs.moving[2], pairs.moving[9]);
-  const auto rows = contour_pairs(pairs, *deformation.basis, 2);
+  const auto rows = pairs_along_border(pairs, *deformation.basis, 2);
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_THAT(rows[0], ElementsAre(0, 1, 9, 3, 4, 5, 6, 7, 8, 2, 10, 11, 12, 13));
 }

@@ -67,6 +67,7 @@ TEST(ContourPairs, RefuseWhatCannotBePaired) {
   refused({}, {}, "moving image is empty");
   refused({{1, 1}, {1, 1}}, {}, "moving image is empty");
   refused(kCorner, {.stretch = [](double t) { return std::sin(6 * t); }}, "grow from 0 to 1");
+  refused(kCorner, {.stretch = [](double t) { return 0.2 + 0.5 * t; }}, "grow from 0 to 1");
 }
 
 // One breast, and the same 10 % larger: every pair differs by that factor about the chest wall's middle.

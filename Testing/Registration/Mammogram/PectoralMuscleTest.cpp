@@ -27,6 +27,7 @@ TEST(PectoralMuscle, IsFoundInObliqueViews) {
     EXPECT_LT(testing::mean_distance(muscle->line, drawn.pectoral), 0.5) << noise;
     EXPECT_LT(muscle->line.front().y(), muscle->line.back().y());
     EXPECT_LT(muscle->line.back().x(), 0.5);  // at the chest wall
+    EXPECT_EQ(std::ranges::adjacent_find(muscle->line), muscle->line.end());
   }
 }
 

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "Applications/OutputFolder.h"
 #include "Images/ImageFile.h"
+#include "Registration/Pictures.h"
 
 namespace crease {
 
@@ -14,5 +18,12 @@ namespace crease {
 template <int Dim>
 void write_warped(const OutputFolder& output, const std::string& name, const std::string& file_name,
                   const ReadImage<Dim>& moving, Image<float, Dim> warped);
+
+/// A picture for people: its name without ending, and how it is drawn.
+using NamedPicture = std::pair<const char*, std::function<Picture()>>;
+
+/// Writes pictures/NAME.png for each, and does further jobs at the same time, in parallel.
+void write_all(const OutputFolder& output, const std::vector<NamedPicture>& pictures,
+               std::vector<std::function<void()>> further_jobs);
 
 }  // namespace crease

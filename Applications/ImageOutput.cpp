@@ -1,9 +1,10 @@
-#include "Applications/WarpedImage.h"
+#include "Applications/ImageOutput.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "Applications/InputFiles.h"
+#include "Core/Parallel.h"
 
 namespace crease {
 namespace {
@@ -49,6 +50,17 @@ void write_warped(const OutputFolder& output, const std::string& name, const std
   if (own_format && has_spacing(moving.format)) return;
   output.write(name + ".mha",
                [&](const Path& file) { write_image(file, warped, PixelType::kFloat); });
+}
+
+void write_all(const OutputFolder& output, const std::vector<NamedPicture>& pictures,
+               std::vector<std::function<void()>> further_jobs) {
+  std::vector<std::function<void()>> jobs = std::move(further_jobs);
+  for (const auto& [name, draw] : pictures) {
+    jobs.push_back([&output, &draw = draw, file = std::string("pictures/") + name + ".png"] {
+      output.write(file, [&](const Path& path) { write_picture(path, draw()); });
+    });
+  }
+  parallel_for(std::ssize(jobs), [&](std::int64_t i) { jobs[static_cast<std::size_t>(i)](); });
 }
 
 template void write_warped<2>(const OutputFolder&, const std::string&, const std::string&,

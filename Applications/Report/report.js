@@ -611,10 +611,12 @@
   class Plot {
     constructor(figure, about) {
       Object.assign(this, { figure, about });
-      this.values = about.curves.flatMap((curve) => curve.values.filter((value) => value != null && value > 0));
+      this.values = about.curves.flatMap((curve) => curve.values.filter((value) => value != null));
+      this.positive = this.values.filter((value) => value > 0);
       this.count = about.curves[0].values.length;
-      const spread = Math.max(...this.values) / Math.min(...this.values);
-      this.log = make('input', { type: 'checkbox', checked: spread > 30, onchange: () => this.show() });
+      const spread = Math.max(...this.positive) / Math.min(...this.positive);
+      const signed = Math.min(...this.values) < 0;  // mutual information is
+      this.log = make('input', { type: 'checkbox', checked: !signed && spread > 30, disabled: signed, onchange: () => this.show() });
       this.readout = make('p', { class: 'readout' }, '\u00a0');
       this.svg = draw('svg', { role: 'img', tabindex: 0, 'aria-label': `${about.title}. Arrow keys read the values.` });
       const keys = about.curves.map((curve, c) => make('label', {},
@@ -645,8 +647,13 @@
       const height = clamp(0.45 * width, 240, 400);
       Object.assign(this, { left: 64, top: 30, tall: height - 76 });
       this.step = (width - this.left - 24) / Math.max(1, this.count - 1);
-      this.high = Math.max(...this.values) * (this.log.checked ? 1.3 : 1.04);
-      this.low = this.log.checked ? Math.min(...this.values) / 1.3 : 0;
+      if (this.log.checked) {
+        Object.assign(this, { low: Math.min(...this.positive) / 1.3, high: Math.max(...this.positive) * 1.3 });
+      } else {
+        const [low, high] = [Math.min(0, ...this.values), Math.max(0, ...this.values)];
+        const margin = 0.04 * (high - low || 1);
+        Object.assign(this, { low: low < 0 ? low - margin : 0, high: high + margin });
+      }
       this.svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
       this.svg.style.height = `${height}px`;
       this.svg.replaceChildren(...this.axes(width, height), ...this.about.curves.flatMap((curve, c) => this.curve(curve, c)),

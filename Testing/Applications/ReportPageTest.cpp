@@ -213,5 +213,27 @@ TEST_F(ReportPage, LeafsThroughVolumes) {
   EXPECT_THAT(browser.problems(), IsEmpty());
 }
 
+// Mutual information is a negative energy: its curve, and the sum's, lie within the plot all the same.
+TEST_F(ReportPage, PlotsNegativeEnergies) {
+  const Phantom phantom = make_phantom("blobs", {.size = 64});
+  write_image(folder / "fixed.mha", phantom.fixed, PixelType::kFloat);
+  write_image(folder / "moving.mha", phantom.moving, PixelType::kFloat);
+  const auto page = report((folder / "fixed.mha").string(), (folder / "moving.mha").string(),
+                           {"--metric", "mi", "--mesh-size", "24"});
+  Browser browser;
+  browser.open(page, 1000, 800);
+  browser.evaluate("location.hash = '#optimisation'");
+  ASSERT_TRUE(browser.becomes_true("document.querySelectorAll('.plot svg path.curve').length > 0"));
+  const auto outside = browser.evaluate(
+      "(() => { const box = document.querySelector('.plot > svg').getBoundingClientRect(); "
+      "return [...document.querySelectorAll('.plot > svg path.curve')].filter((p) => { const b = "
+      "p.getBoundingClientRect(); return !(b.top >= box.top && b.bottom <= box.bottom && b.width > "
+      "0); }).length; })()");
+  EXPECT_EQ(outside, 0);
+  EXPECT_EQ(browser.evaluate("document.querySelectorAll('.plot > svg path.curve').length"), 3);
+  EXPECT_EQ(browser.evaluate("document.querySelector('.plot input').disabled"), true);
+  EXPECT_THAT(browser.problems(), IsEmpty());
+}
+
 }  // namespace
 }  // namespace crease

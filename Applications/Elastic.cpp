@@ -70,10 +70,11 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   const auto certificate = certify_invertibility(*outcome.registration.transform);
   report.end_stage("certificate");
   progress.report({.stage = "results", .fraction = 0.9});
-  const ElasticImages images = make_images(input, outcome);
+  ElasticImages images = make_images(input, outcome);
   const Evaluation<2> evaluation = evaluate_outcome(images);
   const auto errors = target_errors(input, outcome);
   report.end_stage("results");
+  write_displacement(output, input, std::move(images.displacement));
   write_results(output, options, input, outcome, images);
   RegisterStacks<2> stacks(stack_sources(input, outcome, images));
   write_pictures(output, input, outcome, images, stacks.jobs());

@@ -16,20 +16,6 @@ namespace {
 using Path = std::filesystem::path;
 constexpr float kOutside = std::numeric_limits<float>::quiet_NaN();
 
-/// Into the moving image as it is given.
-DisplacementField<2> given_displacement(const ElasticInput& input,
-                                        const DisplacementField<2>& displacement) {
-  DisplacementField<2> given = displacement;
-  const Raster<2>& raster = given.raster();
-  for (std::int64_t k = 0; k < raster.num_samples(); ++k) {
-    const auto [i, j] = given.index(k);
-    const Point<2> x = raster.point({i, j});
-    Vector<2>& u = given.values()[static_cast<std::size_t>(k)];
-    u = input.to_given(x + u) - x;
-  }
-  return given;
-}
-
 /// Determinants of the body alone: its continuation says nothing about tissue.
 Image<float, 2> body_determinants(const ElasticImages& images) {
   Image<float, 2> determinants = images.determinants;
@@ -105,14 +91,25 @@ std::optional<TargetErrors> target_errors(const ElasticInput& input,
   return errors;
 }
 
+void write_displacement(const OutputFolder& output, const ElasticInput& input,
+                        DisplacementField<2> displacement) {
+  if (input.mirrored) {
+    const Raster<2>& raster = displacement.raster();
+    for (std::int64_t k = 0; k < raster.num_samples(); ++k) {
+      const auto [i, j] = displacement.index(k);
+      const Point<2> x = raster.point({i, j});
+      Vector<2>& u = displacement.values()[static_cast<std::size_t>(k)];
+      u = input.to_given(x + u) - x;
+    }
+  }
+  output.write("displacement.mha",
+               [&](const Path& file) { write_displacement_field(file, displacement); });
+}
+
 void write_results(const OutputFolder& output, const ElasticCommandOptions& options,
                    const ElasticInput& input, const ElasticOutcome& outcome,
                    const ElasticImages& images) {
   write_warped(output, "warped", options.moving, input.moving, images.warped);
-  output.write("displacement.mha", [&](const Path& file) {
-    write_displacement_field(file, input.mirrored ? given_displacement(input, images.displacement)
-                                                  : images.displacement);
-  });
   output.write("jacobian.mha", [&](const Path& file) {
     write_image(file, images.determinants, PixelType::kFloat);
   });

@@ -33,7 +33,11 @@ struct TargetErrors {
 };
 std::optional<TargetErrors> target_errors(const ElasticInput& input, const ElasticOutcome& outcome);
 
-/// warped.*, displacement.mha, jacobian.mha, transform.json and pairs.csv.
+/// displacement.mha, into the moving image as it is given.
+void write_displacement(const OutputFolder& output, const ElasticInput& input,
+                        DisplacementField<2> displacement);
+
+/// warped.*, jacobian.mha, transform.json and pairs.csv.
 void write_results(const OutputFolder& output, const ElasticCommandOptions& options,
                    const ElasticInput& input, const ElasticOutcome& outcome,
                    const ElasticImages& images);

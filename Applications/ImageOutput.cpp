@@ -56,7 +56,7 @@ void write_all(const OutputFolder& output, const std::vector<NamedPicture>& pict
                std::vector<std::function<void()>> further_jobs) {
   std::vector<std::function<void()>> jobs = std::move(further_jobs);
   for (const auto& [name, draw] : pictures) {
-    jobs.push_back([&output, &draw = draw, file = std::string("pictures/") + name + ".png"] {
+    jobs.emplace_back([&output, &draw = draw, file = std::string("pictures/") + name + ".png"] {
       output.write(file, [&](const Path& path) { write_picture(path, draw()); });
     });
   }

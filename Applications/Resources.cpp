@@ -1,5 +1,6 @@
 #include "Applications/Resources.h"
 
+#include <malloc.h>
 #include <sched.h>
 #include <sys/resource.h>
 
@@ -101,6 +102,13 @@ int granted_threads(const fs::path& root) {
   if (!wish) wish = environment_count("OMP_NUM_THREADS");
   if (wish) count = std::min(count, *wish);
   return std::max(1, count);
+}
+
+void return_large_blocks() {
+#ifdef __GLIBC__
+  constexpr int kLarge = 8 << 20;  // bytes; left to itself the limit would grow to 32 MiB
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+#endif
 }
 
 double peak_memory_mb() {

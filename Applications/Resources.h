@@ -11,6 +11,9 @@ namespace crease {
 /// @param root  where /proc and /sys/fs/cgroup are found; another folder for tests.
 int granted_threads(const std::filesystem::path& root = "/");
 
+/// From now on blocks as large as images go back to the system when they are freed, so that they leave no gaps.
+void return_large_blocks();
+
 /// The largest memory that this process has held, in MB (10^6 bytes).
 double peak_memory_mb();
 

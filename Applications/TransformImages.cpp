@@ -2,8 +2,8 @@
 
 #include <Eigen/LU>
 
-#include "Core/Parallel.h"
 #include "Transforms/StrainMap.h"
+#include "Transforms/TransformRows.h"
 
 namespace crease {
 
@@ -11,19 +11,15 @@ template <int Dim>
 TransformImages<Dim> transform_images(const Transform<Dim>& transform, const Raster<Dim>& raster) {
   TransformImages<Dim> images{DisplacementField<Dim>(raster), Image<float, Dim>(raster),
                               Image<float, Dim>(raster), Mask<Dim>(raster)};
-  const Vector<Dim> step = raster.index_to_point().col(0);
-  parallel_for(raster.num_rows(), [&](std::int64_t row) {
-    const Point<Dim> start = raster.row_start(row);
+  for_each_row(transform, raster, [&](std::int64_t row, const auto& x, const auto& samples) {
     const auto displacement = images.displacement.row(row);
     const auto determinants = images.determinants.row(row), strain = images.strain.row(row);
     const auto domain = images.domain.row(row);
     for (std::size_t i = 0; i < displacement.size(); ++i) {
-      const Point<Dim> x = start + static_cast<double>(i) * step;
-      const auto sample = transform.sample(x);
-      displacement[i] = sample.point - x;
-      determinants[i] = static_cast<float>(sample.jacobian.determinant());
-      strain[i] = static_cast<float>(strain_norm<Dim>(sample.jacobian));
-      domain[i] = sample.in_domain ? 1 : 0;
+      displacement[i] = samples[i].point - x[i];
+      determinants[i] = static_cast<float>(samples[i].jacobian.determinant());
+      strain[i] = static_cast<float>(strain_norm<Dim>(samples[i].jacobian));
+      domain[i] = samples[i].in_domain ? 1 : 0;
     }
   });
   return images;

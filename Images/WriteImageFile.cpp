@@ -45,7 +45,8 @@ RawImage raw_header(const Raster<Dim>& raster, ImageFormat format, PixelType typ
   return raw;
 }
 
-void write_raw(const std::filesystem::path& path, ImageFormat format, const RawImage& raw) {
+/// Keeps the pixels no longer than it must: files are looked through without them.
+void write_raw(const std::filesystem::path& path, ImageFormat format, RawImage raw) {
   write_whole_file(path, [&](const std::filesystem::path& temporary) {
     auto name = temporary.filename().string();
     if (format == ImageFormat::kNifti) {  // ITK knows its name in small letters only
@@ -57,6 +58,7 @@ void write_raw(const std::filesystem::path& path, ImageFormat format, const RawI
     } else {
       write_with_itk(plain, format, raw);
     }
+    raw.data.reset();
     try {
       check_file(plain, format);
     } catch (const FileError&) {
@@ -96,7 +98,7 @@ void write_converted(const std::filesystem::path& path, const Image<Pixel, Dim>&
     T* to = raw.values<T>();
     for (const Pixel& pixel : image.values()) *to++ = rounded<T>(value_of(pixel));
   });
-  write_raw(path, format, raw);
+  write_raw(path, format, std::move(raw));
 }
 
 bool is_whole(PixelType type) { return type != PixelType::kFloat && type != PixelType::kDouble; }
@@ -160,7 +162,7 @@ void write_displacement_field(const std::filesystem::path& path,
       for (int a = 0; a < Dim; ++a) *to++ = rounded<T>(u[a]);
     }
   });
-  write_raw(path, format, raw);
+  write_raw(path, format, std::move(raw));
 }
 
 void write_rgb_png(const std::filesystem::path& path, int width, int height,

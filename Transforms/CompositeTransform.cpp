@@ -2,8 +2,40 @@
 
 #include "Core/Error.h"
 #include "Transforms/ParameterCheck.h"
+#include "Transforms/TransformSampler.h"
 
 namespace crease {
+
+namespace {
+
+/// Part after part, on all points.
+template <int Dim>
+class CompositeSampler final : public TransformSampler<Dim> {
+ public:
+  using typename TransformSampler<Dim>::Sample;
+  explicit CompositeSampler(const std::vector<std::unique_ptr<Transform<Dim>>>& parts) {
+    for (const auto& part : parts) parts_.push_back(part->sampler());
+  }
+
+  void sample(std::span<const Point<Dim>> x, std::span<Sample> samples) const override {
+    std::vector<Point<Dim>> places(x.begin(), x.end());
+    std::vector<Sample> here(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k) samples[k] = {x[k], Matrix<Dim>::Identity(), true};
+    for (const auto& part : parts_) {
+      part->sample(places, here);
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        samples[k].point = places[k] = here[k].point;
+        samples[k].jacobian = (here[k].jacobian * samples[k].jacobian).eval();
+        samples[k].in_domain = samples[k].in_domain && here[k].in_domain;
+      }
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<TransformSampler<Dim>>> parts_;
+};
+
+}  // namespace
 
 template <int Dim>
 CompositeTransform<Dim>::CompositeTransform(std::vector<std::unique_ptr<Transform<Dim>>> parts)
@@ -51,6 +83,11 @@ typename Transform<Dim>::Sample CompositeTransform<Dim>::sample(const Point<Dim>
     all.in_domain = all.in_domain && here.in_domain;
   }
   return all;
+}
+
+template <int Dim>
+std::unique_ptr<TransformSampler<Dim, Dim>> CompositeTransform<Dim>::sampler() const {
+  return std::make_unique<CompositeSampler<Dim>>(parts_);
 }
 
 template <int Dim>

@@ -23,6 +23,7 @@ class CompositeTransform final : public Transform<Dim> {
   Point<Dim> map(const Point<Dim>& x) const override;
   Matrix<Dim> spatial_jacobian(const Point<Dim>& x) const override;
   typename Transform<Dim>::Sample sample(const Point<Dim>& x) const override;
+  std::unique_ptr<TransformSampler<Dim, Dim>> sampler() const override;
   /// Whether every part is within its own domain on the way.
   bool in_domain(const Point<Dim>& x) const override;
   Eigen::Index num_parameters() const override;

@@ -1,18 +1,16 @@
 #include "Transforms/DisplacementField.h"
 
-#include "Core/Parallel.h"
+#include "Transforms/TransformRows.h"
 
 namespace crease {
 
 template <int Dim>
 ControlPoints<Dim> displacement_field(const Transform<Dim>& transform, const Raster<Dim>& raster) {
   ControlPoints<Dim> field(Dim, raster.num_samples());
-  const Vector<Dim> step = raster.index_to_point().col(0);
-  parallel_for(raster.num_rows(), [&](std::int64_t row) {
-    const Point<Dim> start = raster.row_start(row);
-    for (int i = 0; i < raster.size[0]; ++i) {
-      const Point<Dim> x = start + i * step;
-      field.col(row * raster.size[0] + i) = transform.map(x) - x;
+  for_each_row(transform, raster, [&](std::int64_t row, const auto& x, const auto& samples) {
+    const std::int64_t first = row * raster.size[0];
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      field.col(first + static_cast<std::int64_t>(i)) = samples[i].point - x[i];
     }
   });
   return field;

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 
 #include "Core/Error.h"
-#include "Core/Parallel.h"
+#include "Transforms/TransformRows.h"
 
 namespace crease {
 
@@ -43,15 +43,11 @@ JacobianMap<Dim> jacobian_map(const Transform<Dim>& transform, const Raster<Dim>
   JacobianMap<Dim> result{raster, {}, {}};
   result.determinants.resize(static_cast<std::size_t>(raster.num_samples()));
   result.in_domain.resize(result.determinants.size());
-  const Vector<Dim> step = raster.index_to_point().col(0);
-  parallel_for(raster.num_rows(), [&](std::int64_t row) {
-    const Point<Dim> start = raster.row_start(row);
-    for (int i = 0; i < raster.size[0]; ++i) {
-      const Point<Dim> x = start + i * step;
-      const auto n = static_cast<std::size_t>(row * raster.size[0] + i);
-      const auto sample = transform.sample(x);
-      result.determinants[n] = sample.jacobian.determinant();
-      result.in_domain[n] = sample.in_domain ? 1 : 0;
+  for_each_row(transform, raster, [&](std::int64_t row, const auto&, const auto& samples) {
+    const auto first = static_cast<std::size_t>(row * raster.size[0]);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      result.determinants[first + i] = samples[i].jacobian.determinant();
+      result.in_domain[first + i] = samples[i].in_domain ? 1 : 0;
     }
   });
   return result;

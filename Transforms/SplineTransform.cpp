@@ -2,6 +2,8 @@
 
 #include "Core/Error.h"
 #include "Transforms/ParameterCheck.h"
+#include "Transforms/Splines/SplineSampler.h"
+#include "Transforms/TransformSampler.h"
 
 namespace crease {
 namespace {
@@ -15,6 +17,32 @@ BasisValues<Dim> continued(const SplineBasis<Dim>& basis, const Point<Dim>& x) {
   at_p.values += at_p.gradients.transpose() * (x - p);
   return at_p;
 }
+
+/// The affine map and what the spline adds.
+template <int InDim, int OutDim>
+class SplineTransformSampler final : public TransformSampler<InDim, OutDim> {
+ public:
+  using typename TransformSampler<InDim, OutDim>::Sample;
+  SplineTransformSampler(const AffineMap<InDim, OutDim>& affine,
+                         std::unique_ptr<SplineSampler<InDim>> spline)
+      : affine_(affine), spline_(std::move(spline)) {}
+
+  void sample(std::span<const Point<InDim>> x, std::span<Sample> samples) const override {
+    Eigen::MatrixXd jets(OutDim * (1 + InDim), static_cast<Eigen::Index>(x.size()));
+    std::vector<std::uint8_t> inside(x.size());
+    spline_->sample(x, jets, inside);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const double* jet = jets.col(static_cast<Eigen::Index>(k)).data();
+      const Eigen::Map<const Vector<OutDim>> u(jet);
+      const Eigen::Map<const Matrix<OutDim, InDim>> gradient(jet + OutDim);
+      samples[k] = {affine_(x[k]) + u, affine_.linear + gradient, inside[k] != 0};
+    }
+  }
+
+ private:
+  AffineMap<InDim, OutDim> affine_;
+  std::unique_ptr<SplineSampler<InDim>> spline_;
+};
 
 }  // namespace
 
@@ -99,6 +127,13 @@ typename Transform<InDim, OutDim>::Sample SplineTransform<InDim, OutDim>::sample
   const Point<InDim> p = inside ? x : basis_->nearest_point(x);
   const Jet u = displacement(p, 1);
   return {affine_(x) + u.value + u.gradient * (x - p), affine_.linear + u.gradient, inside};
+}
+
+template <int InDim, int OutDim>
+std::unique_ptr<TransformSampler<InDim, OutDim>> SplineTransform<InDim, OutDim>::sampler() const {
+  auto spline = basis_->sampler(control_points_);
+  if (spline == nullptr) return Transform<InDim, OutDim>::sampler();
+  return std::make_unique<SplineTransformSampler<InDim, OutDim>>(affine_, std::move(spline));
 }
 
 template <int InDim, int OutDim>

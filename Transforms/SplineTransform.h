@@ -42,6 +42,7 @@ class SplineTransform final : public Transform<InDim, OutDim> {
   Point<OutDim> map(const Point<InDim>& x) const override;
   Matrix<OutDim, InDim> spatial_jacobian(const Point<InDim>& x) const override;
   typename Transform<InDim, OutDim>::Sample sample(const Point<InDim>& x) const override;
+  std::unique_ptr<TransformSampler<InDim, OutDim>> sampler() const override;
   bool in_domain(const Point<InDim>& x) const override { return basis_->contains(x); }
   Eigen::Index num_parameters() const override { return control_points_.size(); }
   Eigen::VectorXd parameters() const override;

@@ -9,6 +9,9 @@
 
 namespace crease {
 
+template <int InDim, int OutDim>
+class TransformSampler;
+
 /// A map from R^InDim to R^OutDim with parameters: 2 -> 2 deforms a mammogram, 3 -> 3 a volume, 2 -> 3
 /// is a shell's middle surface. In registration it carries points of the fixed image to the moving
 /// image, both in mm (LPS).
@@ -32,6 +35,8 @@ class Transform {
   virtual Sample sample(const Point<InDim>& x) const {
     return {map(x), spatial_jacobian(x), in_domain(x)};
   }
+  /// The same for many points that lie near each other; the transform must outlive it.
+  virtual std::unique_ptr<TransformSampler<InDim, OutDim>> sampler() const;
   /// Whether T is defined by its spline at x; outside, `map` continues as its class documents.
   virtual bool in_domain(const Point<InDim>&) const { return true; }
 
@@ -65,5 +70,9 @@ class Transform {
   /// (parameters zero: not at all); nullopt where it knows no such measure.
   virtual std::optional<Eigen::MatrixXd> roughness_matrix() const { return std::nullopt; }
 };
+
+extern template class Transform<2, 2>;
+extern template class Transform<3, 3>;
+extern template class Transform<2, 3>;
 
 }  // namespace crease

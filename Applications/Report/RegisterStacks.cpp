@@ -258,11 +258,18 @@ void RegisterStacks<Dim>::add_outlines() {
   }
 }
 
+/// In 3D, with so many more lines, read off the displacement; in 2D that need not be there any more.
+template <int Dim>
+PointMap<Dim> RegisterStacks<Dim>::grid_map() const {
+  if constexpr (Dim == 3) return displacement_map(sources_.images.displacement);
+  return [this](const Point<Dim>& x) { return sources_.transform.map(x); };
+}
+
 template <int Dim>
 void RegisterStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) const {
   constexpr int kLines = Dim == 2 ? 32 : 20;
   const Raster<Dim>& fixed = fixed_.raster;
-  const PointMap<Dim> map = displacement_map(sources_.images.displacement);
+  const PointMap<Dim> map = grid_map();
   for (int p = 0; p < stack.planes.num_planes(); ++p) {
     const auto& slices = stack.planes.slices(p);
     for (std::size_t s = 0; s < slices.size(); ++s) {

@@ -29,7 +29,7 @@ struct StackSources {
   const Image<float, Dim>& moving;
   const Image<float, Dim>& warped;     ///< moving(T(x)) on the fixed raster
   const Image<float, Dim>& before;     ///< moving(x)
-  const TransformImages<Dim>& images;  ///< of T
+  const TransformImages<Dim>& images;  ///< of T; in 2D without the displacement
   const Transform<Dim>& transform;     ///< T, into the moving image
   const Landmarks<Dim>& landmarks;
   std::vector<FeatureLine> lines = {};  ///< 2D
@@ -85,6 +85,7 @@ class RegisterStacks {
   void add_outlines();
   void add_deformation();
   void find_places();
+  PointMap<Dim> grid_map() const;
   void draw_grid(const Stack& stack, ReportOverlay& overlay) const;
   void draw_landmarks(const Stack& stack, ReportOverlay& overlay) const;
   void draw_features(const Stack& stack, const PointMap<Dim>& map, ReportOverlay& overlay) const;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 
@@ -8,6 +9,8 @@
 
 namespace crease {
 namespace {
+
+constexpr std::uintmax_t kLongestHeader = 1 << 20;  // bytes
 
 using Fields = std::map<std::string, std::string, std::less<>>;
 
@@ -52,10 +55,17 @@ std::uint64_t bytes_of_type(const std::filesystem::path& path, std::string type)
   return found->second;
 }
 
+/// Those of a file behind the first `before` ones.
+std::uintmax_t bytes_behind(const std::filesystem::path& path, std::uintmax_t before) {
+  read_bytes(path, 1);  // fails as it does for all files that cannot be read
+  const auto size = std::filesystem::file_size(path);
+  return size - std::min<std::uintmax_t>(size, before);
+}
+
 }  // namespace
 
 void check_meta_image(const std::filesystem::path& path) {
-  const auto bytes = read_bytes(path);
+  const auto bytes = read_bytes(path, kLongestHeader);
   const std::string_view text = ByteReader(bytes, false).text(0, bytes.size());
   std::size_t at = 0;
   const Fields fields = read_fields(path, text, at);
@@ -78,18 +88,21 @@ void check_meta_image(const std::filesystem::path& path) {
   if (!local && !std::filesystem::exists(data_path)) {
     fail(path, message("its pixels, the file ", data_path.string(), ", are missing"));
   }
-  const auto data = local ? std::vector<std::uint8_t>() : read_bytes(data_path);
-  const Bytes content = local ? Bytes(bytes).subspan(at) : Bytes(data);
-
-  if (is_true(value_of(fields, "CompressedData", "False"))) {
+  const bool compressed = is_true(value_of(fields, "CompressedData", "False"));
+  if (!compressed && is_true(value_of(fields, "BinaryData", "True"))) {
+    const long skipped = std::atol(value_of(fields, "HeaderSize", "0").c_str());
+    const auto before = local ? at : static_cast<std::uint64_t>(std::max(0l, skipped));
+    const auto found = bytes_behind(data_path, before);
+    if (found < needed) fail_truncated(data_path, needed, found);
+    return;
+  }
+  const auto data = read_bytes(data_path);
+  const Bytes content = Bytes(data).subspan(local ? at : 0);
+  if (compressed) {
     if (inflated_size(content) < needed) {
       fail(data_path,
            "the compressed pixels are truncated or damaged; copy or export the file again");
     }
-  } else if (is_true(value_of(fields, "BinaryData", "True"))) {
-    const long skipped = local ? 0 : std::atol(value_of(fields, "HeaderSize", "0").c_str());
-    const auto total = needed + static_cast<std::uint64_t>(std::max(0l, skipped));
-    if (content.size() < total) fail_truncated(data_path, total, content.size());
   } else if (channels > 1) {  // ITK reads only the first of them and leaves the rest as it finds it
     fail(path, message("pixels of ", channels,
                        " values each, written as text, are not supported; "

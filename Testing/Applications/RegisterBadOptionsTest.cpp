@@ -51,7 +51,8 @@ TEST_F(RegisterBadOptions, OptionsOutOfRange) {
 }
 
 TEST_F(RegisterBadOptions, ElasticTissue) {
-  const auto refused = [&](std::vector<std::string> extra, const std::vector<std::string>& texts) {
+  const auto refused = [&](const std::vector<std::string>& extra,
+                           const std::vector<std::string>& texts) {
     expect_refused(run(extra), 2, texts);
   };
   refused({"--energy", "elastc"}, {"--energy", "did you mean elastic?"});

@@ -16,7 +16,9 @@
 #include "Registration/Phantoms/PowerLawTexture.h"
 #include "Registration/SamplesInside.h"
 #include "Testing/Benchmarks/Counters.h"
+#include "Transforms/CompositeTransform.h"
 #include "Transforms/Energies/LinearElasticEnergy.h"
+#include "Transforms/TransformSampler.h"
 
 namespace crease::benchmarks {
 namespace {
@@ -129,6 +131,36 @@ void BM_RefinementPass(benchmark::State& state) {
 BENCHMARK(BM_RefinementPass)
     ->ArgNames({"shrink", "threads", "outputs", "composed"})
     ->ArgsProduct({{8, 1}, {1, 2}, {0, 1, 2}, {0, 1}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// The composite map and its derivative at every pixel, inside the breast and beyond. Arguments: sampler (0: one
+/// point after the other), threads.
+void BM_MapAtAllPixels(benchmark::State& state) {
+  const Threads threads(static_cast<int>(state.range(1)));
+  std::vector<std::unique_ptr<Transform<2>>> parts;
+  parts.push_back(wave(0.3, 0.9).clone());
+  parts.push_back(wave(6, 0.3).clone());
+  const CompositeTransform<2> map(std::move(parts));
+  const Raster<2> raster = breast_raster(1);
+  for (auto _ : state) {
+    const std::unique_ptr<const TransformSampler<2>> sampler =
+        state.range(0) > 0 ? map.sampler() : std::make_unique<OneByOneSampler<2>>(map);
+    parallel_for(raster.size[1], [&](std::int64_t row) {
+      std::vector<Point<2>> x;
+      for (int i = 0; i < raster.size[0]; ++i) {
+        x.push_back(raster.point({i, static_cast<double>(row)}));
+      }
+      std::vector<Transform<2>::Sample> samples(x.size());
+      sampler->sample(x, samples);
+      benchmark::DoNotOptimize(samples.data());
+    });
+  }
+  count_time(state, "per_pixel", raster.num_samples(), threads.count());
+}
+BENCHMARK(BM_MapAtAllPixels)
+    ->ArgNames({"sampler", "threads"})
+    ->ArgsProduct({{0, 1}, {1, 2}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 

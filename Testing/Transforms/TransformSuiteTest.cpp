@@ -16,6 +16,7 @@
 #include "Transforms/Splines/PowellSabinBasis.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 #include "Transforms/TransformFile.h"
+#include "Transforms/TransformSampler.h"
 
 namespace crease {
 namespace {
@@ -216,6 +217,20 @@ TYPED_TEST(TransformSuite, SpatialJacobianMatchesCentralDifferences) {
           (transform->map(x + h) - transform->map(x - h)) / (2 * kStep);
       EXPECT_LT((jacobian.col(a) - difference).norm(), 1e-8);
     }
+  }
+}
+
+TYPED_TEST(TransformSuite, SamplerSeesWhatSingleSamplesDo) {
+  const auto transform = this->moved();
+  auto x = this->points(40);
+  for (std::size_t k = 0; k < 20; ++k) x.push_back(3.0 * x[k]);  // most of them outside
+  std::vector<typename Transform<TypeParam::kIn, TypeParam::kOut>::Sample> samples(x.size());
+  transform->sampler()->sample(x, samples);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const auto one = transform->sample(x[k]);
+    EXPECT_LT((samples[k].point - one.point).norm(), 1e-10 * (1 + one.point.norm()));
+    EXPECT_LT((samples[k].jacobian - one.jacobian).norm(), 1e-10 * (1 + one.jacobian.norm()));
+    EXPECT_EQ(samples[k].in_domain, one.in_domain);
   }
 }
 

@@ -12,9 +12,4 @@ namespace crease {
 template <int Dim>
 std::vector<std::array<int, Dim>> border_facets(const SimplexMesh<Dim>& mesh);
 
-/// The point of the facets that is nearest to x.
-template <int Dim>
-Point<Dim> nearest_on_facets(const SimplexMesh<Dim>& mesh,
-                             const std::vector<std::array<int, Dim>>& facets, const Point<Dim>& x);
-
 }  // namespace crease

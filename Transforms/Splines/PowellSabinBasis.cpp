@@ -115,7 +115,7 @@ PowellSabinBasis::PowellSabinBasis(PowellSabinNet net) : net_(std::move(net)), f
     patches_.emplace_back(parts);
   }
   locator_ = std::make_unique<KnotLocator<2>>(net_.mesh, kKnotTie * mesh_scale(net_.mesh));
-  border_ = border_facets<2>(net_.mesh);
+  border_ = NearestFacets<2>(net_.mesh, border_facets<2>(net_.mesh));
   const MeshFigures figures = mesh_figures(net_.mesh);
   measure_ = figures.area;
   mean_edge_length_ = figures.mean_edge;
@@ -128,7 +128,7 @@ int PowellSabinBasis::find_simplex(const Point<2>& x) const { return locator_->f
 Box<2> PowellSabinBasis::bounds() const { return locator_->bounds(); }
 
 Point<2> PowellSabinBasis::nearest_point(const Point<2>& x) const {
-  return contains(x) ? x : nearest_on_facets<2>(net_.mesh, border_, x);
+  return contains(x) ? x : border_.find(x).point;
 }
 
 Eigen::VectorXd PowellSabinBasis::control_values(std::span<const double> values,

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "Transforms/Splines/NearestFacets.h"
 #include "Transforms/Splines/PowellSabinPatch.h"
 #include "Transforms/Splines/PowellSabinTriangles.h"
 #include "Transforms/Splines/SplineBasis.h"
@@ -79,7 +80,7 @@ class PowellSabinBasis final : public SplineBasis<2> {
   std::vector<int> first_;  // control point of each vertex; and their number
   std::vector<PowellSabinPatch> patches_;
   std::unique_ptr<KnotLocator<2>> locator_;
-  std::vector<std::array<int, 2>> border_;  // its edges
+  NearestFacets<2> border_;
   double measure_ = 0.0, mean_edge_length_ = 0.0;
 };
 

@@ -4,6 +4,7 @@
 
 #include "Core/Error.h"
 #include "Transforms/Splines/DeterminantPieces.h"
+#include "Transforms/Splines/SplineSampler.h"
 
 namespace crease {
 
@@ -48,6 +49,12 @@ std::shared_ptr<const HessianPattern> SplineBasis<Dim>::pattern() const {
 template <int Dim>
 std::unique_ptr<DeterminantPieces<Dim>> SplineBasis<Dim>::determinant_pieces(
     const ControlPoints<Dim>&, const Matrix<Dim>&) const {
+  return nullptr;
+}
+
+template <int Dim>
+std::unique_ptr<SplineSampler<Dim>> SplineBasis<Dim>::sampler(
+    const Eigen::Ref<const Eigen::MatrixXd>&) const {
   return nullptr;
 }
 

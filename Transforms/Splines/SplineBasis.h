@@ -20,6 +20,8 @@ template <int Dim>
 class BoundGrid;
 template <int Dim>
 class DeterminantPieces;
+template <int Dim>
+class SplineSampler;
 
 /// Number of distinct second derivatives: xx, xy, yy (2D); xx, xy, xz, yy, yz, zz (3D).
 template <int Dim>
@@ -99,6 +101,10 @@ class SplineBasis {
       const Eigen::Ref<const Eigen::MatrixXd>& /*control_points*/) const {
     return nullptr;
   }
+  /// Control points bound once, for many x at a time; the basis must outlive it. Null unless overridden.
+  /// @param control_points  one column per control point, 2 or 3 rows.
+  virtual std::unique_ptr<SplineSampler<Dim>> sampler(
+      const Eigen::Ref<const Eigen::MatrixXd>& control_points) const;
   /// Control points of the identity map (Greville points): sum_i g_i B_i(x) = x.
   virtual ControlPoints<Dim> greville_points() const = 0;
   /// Cells that cover the domain, each with a Gauss rule exact for polynomials of the degree given, and

@@ -16,6 +16,7 @@
 #include "Transforms/Splines/TriangularBSplineGrid.h"
 #include "Transforms/Splines/TriangularBSplinePieces.h"
 #include "Transforms/Splines/TriangularBSplineQuadrature.h"
+#include "Transforms/Splines/TriangularBSplineSampler.h"
 
 namespace crease {
 namespace {
@@ -113,7 +114,7 @@ template <int Dim>
 TriangularBSplineBasis<Dim>::TriangularBSplineBasis(KnotNet<Dim> net)
     : net_(checked(std::move(net))),
       control_points_(net_.mesh, net_.degree),
-      border_(border_facets<Dim>(net_.mesh)),
+      border_(net_.mesh, border_facets<Dim>(net_.mesh)),
       tie_(kKnotTie * mesh_scale(net_.mesh)),
       mean_edge_length_(crease::mean_edge_length(net_.mesh)) {
   locator_ = std::make_unique<KnotLocator<Dim>>(net_.mesh, tie_);
@@ -177,7 +178,7 @@ bool TriangularBSplineBasis<Dim>::in_core(int simplex, const Point<Dim>& x) cons
 
 template <int Dim>
 Point<Dim> TriangularBSplineBasis<Dim>::nearest_point(const Point<Dim>& x) const {
-  return contains(x) ? x : nearest_on_facets<Dim>(net_.mesh, border_, x);
+  return contains(x) ? x : border_.find(x).point;
 }
 
 template <int Dim>
@@ -227,6 +228,16 @@ BasisValues<Dim> TriangularBSplineBasis<Dim>::evaluate(const Point<Dim>& x, int 
   } else {
     return values_near(*graph_, net_, control_points_, neighbours_[simplex], x, simplex,
                        derivatives);
+  }
+}
+
+template <int Dim>
+std::unique_ptr<SplineSampler<Dim>> TriangularBSplineBasis<Dim>::sampler(
+    const Eigen::Ref<const Eigen::MatrixXd>& control_points) const {
+  if constexpr (Dim == 3) {
+    return nullptr;
+  } else {
+    return std::make_unique<TriangularBSplineSampler>(*this, *evaluator_, border_, control_points);
   }
 }
 

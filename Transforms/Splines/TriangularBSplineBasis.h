@@ -6,6 +6,7 @@
 #include "Transforms/Domains/KnotNet.h"
 #include "Transforms/Splines/BPatch.h"
 #include "Transforms/Splines/KnotControlPoints.h"
+#include "Transforms/Splines/NearestFacets.h"
 #include "Transforms/Splines/SplineBasis.h"
 
 namespace crease {
@@ -63,6 +64,8 @@ class TriangularBSplineBasis final : public SplineBasis<Dim> {
   double mean_edge_length() const override { return mean_edge_length_; }
   double edge_length(const Point<Dim>& x) const override;
   BasisValues<Dim> evaluate(const Point<Dim>& x, int derivatives = 0) const override;
+  std::unique_ptr<SplineSampler<Dim>> sampler(
+      const Eigen::Ref<const Eigen::MatrixXd>& control_points) const override;
   ControlPoints<Dim> greville_points() const override;
   /// Elements are cells of the arrangement of knot segments (KnotCells), `patch` = the triangle.
   std::vector<QuadratureElement<Dim>> quadrature(
@@ -83,7 +86,7 @@ class TriangularBSplineBasis final : public SplineBasis<Dim> {
   std::unique_ptr<TriangularBSplineQuadrature> quadrature_;  // 2D
   std::unique_ptr<SimplexSplineGraph<Dim>> graph_;           // 3D
   std::vector<std::vector<int>> neighbours_;                 // 3D: simplices that share a vertex
-  std::vector<std::array<int, Dim>> border_;                 // its facets
+  NearestFacets<Dim> border_;
   double tie_ = 0.0, measure_ = 0.0, mean_edge_length_ = 0.0;
 };
 

@@ -209,6 +209,21 @@ void TriangularBSplineEvaluator::find_near_edges(const KnotNet<2>& net) {
   }
 }
 
+std::vector<double> TriangularBSplineEvaluator::breaks_along(int triangle, const Point<2>& a,
+                                                             const Point<2>& b) const {
+  std::vector<double> breaks;
+  for (int e : triangles_[triangle].near_edges) {
+    for (const LaneLine& line : edges_[e].lines) {
+      const auto distance = [&](const Point<2>& p) {
+        return line.nx * p.x() + line.ny * p.y() - line.offset;
+      };
+      const double at_a = distance(a), at_b = distance(b);
+      if (at_a * at_b < 0) breaks.push_back(at_a / (at_a - at_b));
+    }
+  }
+  return breaks;
+}
+
 int TriangularBSplineEvaluator::Scratch::slot_of(int control_point) {
   if (point_stamp_[control_point] != stamp_) {
     point_stamp_[control_point] = stamp_;

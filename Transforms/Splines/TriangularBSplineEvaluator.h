@@ -35,6 +35,10 @@ class TriangularBSplineEvaluator {
   void evaluate(LanePoints& points, std::span<const int> holders, int derivatives,
                 Scratch& scratch) const;
 
+  /// Where knot lines that may matter in a triangle cross a segment within it: parameters in (0, 1), in no
+  /// order. Between them all functions are polynomials along the segment.
+  std::vector<double> breaks_along(int triangle, const Point<2>& a, const Point<2>& b) const;
+
  private:
   struct Edge {
     KnotEdgeTerms terms;

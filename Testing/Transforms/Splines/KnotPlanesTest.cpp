@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "Testing/Transforms/Splines/TestNets.h"
-#include "Transforms/Splines/KnotBorder.h"
 #include "Transforms/Splines/KnotLocator.h"
 
 namespace crease {
@@ -50,20 +47,6 @@ TEST(KnotLocator, FindsTheHolderOrNone) {
   }
   EXPECT_EQ(locator.find({70.1, 20.0}), -1);
   EXPECT_EQ(locator.find({-1.0, -1.0}), -1);
-}
-
-TEST(KnotBorder, NearestPointsBeatAllOthersOnTheBorder) {
-  const auto net = testing::tetrahedral_net(1, 0.4);
-  const auto faces = border_facets<3>(net.mesh);
-  EXPECT_EQ(faces.size(), 12u);
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> far(-10.0, 20.0);
-  for (int i = 0; i < 50; ++i) {
-    const Point<3> x(far(random), far(random), far(random));
-    const bool inside = x.minCoeff() > 0 && x.maxCoeff() < 10;
-    const Point<3> truth = x.cwiseMax(0.0).cwiseMin(10.0);
-    if (!inside) EXPECT_LT((nearest_on_facets<3>(net.mesh, faces, x) - truth).norm(), 1e-12);
-  }
 }
 
 }  // namespace

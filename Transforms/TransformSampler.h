@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+
+#include "Transforms/Transform.h"
+
+namespace crease {
+
+/// A transform prepared for many points of which neighbours in the list lie near each other, as in a row of
+/// a raster. Thread-safe; the transform must outlive it and stay as it is.
+template <int InDim, int OutDim = InDim>
+class TransformSampler {
+ public:
+  using Sample = typename Transform<InDim, OutDim>::Sample;
+  virtual ~TransformSampler() = default;
+  /// samples[k] = transform.sample(x[k]), but for rounding.
+  virtual void sample(std::span<const Point<InDim>> x, std::span<Sample> samples) const = 0;
+};
+
+/// One point after the other: what transforms do that have no faster way.
+template <int InDim, int OutDim = InDim>
+class OneByOneSampler final : public TransformSampler<InDim, OutDim> {
+ public:
+  using typename TransformSampler<InDim, OutDim>::Sample;
+  explicit OneByOneSampler(const Transform<InDim, OutDim>& transform) : transform_(transform) {}
+  void sample(std::span<const Point<InDim>> x, std::span<Sample> samples) const override {
+    for (std::size_t k = 0; k < x.size(); ++k) samples[k] = transform_.sample(x[k]);
+  }
+
+ private:
+  const Transform<InDim, OutDim>& transform_;
+};
+
+}  // namespace crease

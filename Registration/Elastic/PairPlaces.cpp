@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "Core/Error.h"
+#include "Core/Quantiles.h"
 
 namespace crease {
 namespace {
@@ -40,12 +41,6 @@ Point<2> nearest_on_rings(const RegionOfInterest& region, const Point<2>& p) {
     }
   }
   return nearest;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The pairs whose fixed points are nearest to that of pair i.

@@ -6,6 +6,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Core/Quantiles.h"
 #include "Images/ImageFile.h"
 #include "Images/IntensityRange.h"
 #include "Images/OpenCvView.h"
@@ -19,12 +20,6 @@ struct Span {
   int size() const { return last - first; }
 };
 using Frame = std::array<Span, 2>;
-
-double median(std::vector<float>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Whether dark stands for dense tissue: see find_frame. Every third pixel of every third row will do.
 bool is_negative(const Image<float, 2>& image, const IntensityRange& range) {
@@ -40,7 +35,8 @@ bool is_negative(const Image<float, 2>& image, const IntensityRange& range) {
       if (to_edge > 0.25) centre.push_back(image(i, j));
     }
   }
-  const double edge = median(border), difference = edge - median(centre);
+  const double edge = median(std::move(border));
+  const double difference = edge - median(std::move(centre));
   if (std::abs(difference) > kClear * range.width()) return difference > 0;
   return edge > 0.5 * (range.lower + range.upper);
 }

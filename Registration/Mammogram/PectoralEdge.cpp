@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "Core/Quantiles.h"
+
 namespace crease::pectoral {
 namespace {
 
@@ -27,12 +29,10 @@ std::optional<std::pair<double, double>> edge_thresholds(const View& view,
     }
   }
   if (sizes.size() < 100) return std::nullopt;
-  const auto quantile = [&](double share) {
-    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
-    std::nth_element(sizes.begin(), sizes.begin() + k, sizes.end());
-    return std::sqrt(sizes[static_cast<std::size_t>(k)]);
+  const auto threshold = [&](double share) {
+    return std::sqrt(value_of_rank(std::span(sizes), nearest_rank(std::ssize(sizes), share)));
   };
-  return std::pair(quantile(0.7), quantile(0.9));
+  return std::pair(threshold(0.7), threshold(0.9));
 }
 
 /// Canny's edges of the quadrant that are bright towards the corner, at a slope that a muscle may have.

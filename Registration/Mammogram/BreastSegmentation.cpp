@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "Core/Parallel.h"
+#include "Images/OctagonFilter.h"
 #include "Images/OpenCvView.h"
-#include "Registration/Mammogram/OctagonFilter.h"
 
 namespace crease {
 namespace {

@@ -7,7 +7,7 @@
 #include "Core/Error.h"
 #include "Images/OpenCvView.h"
 #include "Registration/Mammogram/PectoralEdge.h"
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 namespace crease {
 namespace {

@@ -8,7 +8,7 @@
 #include "Core/Error.h"
 #include "Core/Quantiles.h"
 #include "Images/OpenCvView.h"
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 namespace crease {
 namespace {

@@ -1,4 +1,4 @@
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>

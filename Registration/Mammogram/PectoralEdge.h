@@ -1,6 +1,5 @@
 #pragma once
 
-#include <opencv2/core/mat.hpp>
 #include <optional>
 
 #include "Images/Image.h"
@@ -11,16 +10,17 @@ namespace crease::pectoral {
 
 /// The film with the chest wall on the left, blurred, and where edges may lie. Points in pixels.
 struct View {
-  cv::Mat grey;     ///< float, 0 to 255 over the histogram's range
-  cv::Mat gx, gy;   ///< float, its gradient, grey values per pixel
-  cv::Mat breast;   ///< 8 bit: 1 in the breast
-  cv::Mat allowed;  ///< 8 bit: 1 in the breast, away from the skin
+  Image<float, 2> grey;    ///< 0 to 255 over the histogram's range
+  Image<float, 2> gx, gy;  ///< its gradient, grey values per pixel
+  Mask<2> breast;
+  Mask<2> allowed;  ///< the breast away from the skin
   double pixel_mm = 1;
-
-  bool holds(const cv::Mat& mask, const Point<2>& p) const;
-  /// Bilinear; 0 outside.
-  double value(const cv::Mat& image, const Point<2>& p) const;
 };
+
+/// Whether the mask is set at the pixel nearest to a point of the view.
+bool holds(const Mask<2>& mask, const Point<2>& p);
+/// Bilinear; 0 outside.
+double value_at(const Image<float, 2>& image, const Point<2>& p);
 
 /// The line x cos(angle) + y sin(angle) = offset; `angle` is also its slope against the chest wall.
 struct StraightLine {

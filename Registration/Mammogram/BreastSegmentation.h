@@ -59,7 +59,7 @@ class NoBreastFound : public InvalidInput {
 ///
 /// @param image  the frame's: bright tissue, square pixels.
 /// @throws NoBreastFound when the area is out of range or the breast does not touch exactly one vertical
-/// side; the message says which, and suggests a threshold or a mask of one's own.
+/// side; the message says which, and how to do without the search.
 BreastSegmentation segment_breast(const Image<float, 2>& image,
                                   const BreastSegmentationOptions& options = {});
 

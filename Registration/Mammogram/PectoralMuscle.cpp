@@ -49,7 +49,7 @@ View make_view(const Image<float, 2>& image, const BreastSegmentation& breast,
   return view;
 }
 
-/// Sum, sum of squares and number of grey values beside the line.
+/// The grey values on one side of a piece of the line.
 struct Band {
   double sum = 0, squares = 0;
   int count = 0;
@@ -59,11 +59,12 @@ struct Band {
     ++count;
   }
   double mean() const { return sum / count; }
+  /// Sum of squared deviations from the mean.
   double deviations() const { return squares - sum * sum / count; }
 };
 
-/// Brighter less darker side in standard deviations; 0 where one side is empty. Both are measured piece by piece,
-/// so that greys that change along the line do not count as noise.
+/// PectoralMuscle::contrast; 0 where no two places beside the line lie in the breast. Both sides are measured piece
+/// by piece, so that greys that change along the line do not count as noise.
 double contrast_along(const View& view, const Polyline& line, const PectoralOptions& options) {
   constexpr double kPiece = 10;  // mm
   const int near = static_cast<int>(std::ceil(options.band_near_mm / view.pixel_mm));

@@ -9,11 +9,10 @@
 namespace crease {
 namespace {
 
-using Fields = std::map<std::string, std::string, std::less<>>;
-
 /// Reads "Key = value" lines up to ElementDataFile, the last one.
-Fields read_fields(const std::filesystem::path& path, std::string_view text, std::size_t& at) {
-  Fields fields;
+HeaderFields read_fields(const std::filesystem::path& path, std::string_view text,
+                         std::size_t& at) {
+  HeaderFields fields;
   while (!fields.contains("ElementDataFile")) {
     std::optional<std::string_view> line = next_line(text, at);
     if (!line && at < text.size()) {  // a header of its own need not end its last line
@@ -29,11 +28,6 @@ Fields read_fields(const std::filesystem::path& path, std::string_view text, std
     fields[std::string(trimmed(line->substr(0, equals)))] = trimmed(line->substr(equals + 1));
   }
   return fields;
-}
-
-std::string value_of(const Fields& fields, std::string_view key, const char* otherwise) {
-  const auto found = fields.find(key);
-  return found == fields.end() ? otherwise : found->second;
 }
 
 bool is_true(const std::string& value) {
@@ -58,7 +52,7 @@ void check_meta_image(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path);
   const std::string_view text = ByteReader(bytes, false).text(0, bytes.size());
   std::size_t at = 0;
-  const Fields fields = read_fields(path, text, at);
+  const HeaderFields fields = read_fields(path, text, at);
   const auto pixels = product_of_sizes(value_of(fields, "DimSize", ""));
   const auto channels = product_of_sizes(value_of(fields, "ElementNumberOfChannels", "1"));
   if (!fields.contains("DimSize") || pixels == 0 || channels == 0 ||

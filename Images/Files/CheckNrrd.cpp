@@ -10,8 +10,6 @@
 namespace crease {
 namespace {
 
-using Fields = std::map<std::string, std::string, std::less<>>;
-
 std::string lower_case(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -19,10 +17,11 @@ std::string lower_case(std::string_view text) {
 }
 
 /// Reads "field: value" lines up to an empty line or, in a header of its own, the end.
-Fields read_fields(const std::filesystem::path& path, std::string_view text, std::size_t& at) {
+HeaderFields read_fields(const std::filesystem::path& path, std::string_view text,
+                         std::size_t& at) {
   if (!text.starts_with("NRRD000")) fail(path, "this is not an NRRD file");
   next_line(text, at);
-  Fields fields;
+  HeaderFields fields;
   while (at < text.size()) {
     const auto line = next_line(text, at);
     if (line && line->empty()) return fields;
@@ -37,11 +36,6 @@ Fields read_fields(const std::filesystem::path& path, std::string_view text, std
     fail(path, "the header of the NRRD file is truncated");
   }
   return fields;
-}
-
-std::string value_of(const Fields& fields, std::string_view key, const char* otherwise) {
-  const auto found = fields.find(key);
-  return found == fields.end() ? otherwise : found->second;
 }
 
 std::uint64_t bytes_of_type(const std::filesystem::path& path, const std::string& type) {
@@ -110,7 +104,7 @@ void check_data(const std::filesystem::path& path, const std::string& encoding, 
 void check_nrrd(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path);
   std::size_t at = 0;
-  const Fields fields = read_fields(path, ByteReader(bytes, false).text(0, bytes.size()), at);
+  const HeaderFields fields = read_fields(path, ByteReader(bytes, false).text(0, bytes.size()), at);
   const std::string sizes = value_of(fields, "sizes", "");
   const auto values = product_of_sizes(sizes);
   if (sizes.empty() || values == 0 ||

@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "Core/Error.h"
-#include "Core/Parallel.h"
 #include "Core/Quantiles.h"
 #include "Images/ImageFile.h"
 #include "Images/IntensityRange.h"
@@ -41,49 +40,18 @@ bool is_negative(const Image<float, 2>& image, const IntensityRange& range) {
   return edge > 0.5 * (range.lower + range.upper);
 }
 
-/// Per row and per column, the number of pixels for which `counts` holds.
-template <typename Predicate>
-std::array<std::vector<int>, 2> counts_along_axes(const Image<float, 2>& image, const Frame& frame,
-                                                  const Predicate& counted) {
-  constexpr int kStrips = 16;
-  std::array<std::vector<int>, 2> counts;
-  counts[1].assign(static_cast<std::size_t>(image.size()[1]), 0);
-  std::vector<std::vector<int>> columns(
-      kStrips, std::vector<int>(static_cast<std::size_t>(image.size()[0]), 0));
-  parallel_for(kStrips, [&](std::int64_t strip) {
-    const int height = frame[1].size();
-    auto& column = columns[static_cast<std::size_t>(strip)];
-    const int begin = frame[1].first + static_cast<int>(height * strip / kStrips);
-    const int end = frame[1].first + static_cast<int>(height * (strip + 1) / kStrips);
-    for (int j = begin; j < end; ++j) {
-      const auto row = image.row(j);
-      int sum = 0;
-      for (int i = frame[0].first; i < frame[0].last; ++i) {
-        const int one = counted(row[static_cast<std::size_t>(i)]) ? 1 : 0;
-        column[static_cast<std::size_t>(i)] += one;
-        sum += one;
-      }
-      counts[1][static_cast<std::size_t>(j)] = sum;
-    }
-  });
-  counts[0].assign(columns[0].size(), 0);
-  for (const auto& column : columns) {
-    for (std::size_t i = 0; i < column.size(); ++i) counts[0][i] += column[i];
-  }
-  return counts;
-}
-
 /// The box of rows and columns that show more than the padding.
 Frame film_in(const Image<float, 2>& image, bool negative, const IntensityRange& range,
               double share) {
   const Frame whole = {Span{0, image.size()[0]}, Span{0, image.size()[1]}};
-  const auto padding = static_cast<float>(negative ? range.upper : range.lower);
-  const auto counts = counts_along_axes(
-      image, whole, [&](float v) { return negative ? v < padding : v > padding; });
+  const cv::Mat pixels = opencv_view(image);
+  const cv::Mat shown = (negative ? pixels < range.upper : pixels > range.lower) & 1;
+  std::array<cv::Mat, 2> counts;  // of each column, of each row
+  for (int a = 0; a < 2; ++a) cv::reduce(shown, counts[a], a, cv::REDUCE_SUM, CV_32S);
   Frame film = whole;
   for (int a = 0; a < 2; ++a) {
     const double least = share * whole[1 - a].size();
-    const auto shows = [&](int i) { return counts[a][static_cast<std::size_t>(i)] > least; };
+    const auto shows = [&](int i) { return counts[a].at<int>(i) > least; };
     while (film[a].size() > 1 && !shows(film[a].first)) ++film[a].first;
     while (film[a].size() > 1 && !shows(film[a].last - 1)) --film[a].last;
   }

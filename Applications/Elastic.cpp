@@ -75,7 +75,7 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   const auto errors = target_errors(input, outcome);
   report.end_stage("results");
   write_results(output, options, input, outcome, images);
-  RegisterStacks<2> stacks(stack_sources(input, outcome, images));
+  ReportStacks<2> stacks(stack_sources(input, outcome, images));
   write_pictures(output, input, outcome, images, stacks.jobs());
   output.write_text("config.toml", config);
   report.end_stage("writing");

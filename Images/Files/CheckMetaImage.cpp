@@ -48,7 +48,7 @@ std::uint64_t bytes_of_type(const std::filesystem::path& path, std::string type)
 
 }  // namespace
 
-void check_meta_image(const std::filesystem::path& path) {
+bool check_meta_image(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path);
   const std::string_view text = ByteReader(bytes, false).text(0, bytes.size());
   std::size_t at = 0;
@@ -95,6 +95,7 @@ void check_meta_image(const std::filesystem::path& path) {
            message("the file is truncated: it needs ", values, " numbers and has ", found));
     }
   }
+  return fields.contains("ElementSpacing") || fields.contains("ElementSize");
 }
 
 }  // namespace crease

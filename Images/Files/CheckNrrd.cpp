@@ -101,7 +101,7 @@ void check_data(const std::filesystem::path& path, const std::string& encoding, 
 
 }  // namespace
 
-void check_nrrd(const std::filesystem::path& path) {
+bool check_nrrd(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path);
   std::size_t at = 0;
   const HeaderFields fields = read_fields(path, ByteReader(bytes, false).text(0, bytes.size()), at);
@@ -115,6 +115,8 @@ void check_nrrd(const std::filesystem::path& path) {
   const auto needed = values * bytes_of_type(path, lower_case(value_of(fields, "type", "missing")));
   const std::string encoding = lower_case(value_of(fields, "encoding", "missing"));
 
+  const bool tells_spacing = fields.contains("spacings") || fields.contains("space directions");
+
   std::string name = value_of(fields, "data file", "");
   if (name.empty()) name = value_of(fields, "datafile", "");
   if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
@@ -126,7 +128,7 @@ void check_nrrd(const std::filesystem::path& path) {
   }
   if (name.empty()) {
     check_data(path, encoding, Bytes(bytes).subspan(at), values, needed);
-    return;
+    return tells_spacing;
   }
   const auto data_path = path.parent_path() / name;
   if (!std::filesystem::exists(data_path)) {
@@ -136,6 +138,7 @@ void check_nrrd(const std::filesystem::path& path) {
   const auto skip = std::strtoull(value_of(fields, "byte skip", "0").c_str(), nullptr, 10);
   const auto skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, data.size()));
   check_data(data_path, encoding, Bytes(data).subspan(skipped), values, needed);
+  return tells_spacing;
 }
 
 }  // namespace crease

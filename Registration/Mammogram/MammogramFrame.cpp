@@ -120,7 +120,7 @@ Raster<2> mended(Raster<2> raster, const MammogramFrameOptions& options,
                                  " mm cannot be; give a positive size."));
     }
     raster.spacing.setConstant(*options.pixel_size_mm);
-  } else if (raster.spacing == Vector<2>::Ones()) {
+  } else if (!options.spacing_known) {
     raster.spacing.setConstant(kAssumed);
     notes.push_back(message("the pixel size is not known: ", kAssumed, " mm is assumed"));
   }

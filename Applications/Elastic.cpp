@@ -76,7 +76,7 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   report.end_stage("results");
   write_displacement(output, input, std::move(images.displacement));
   write_results(output, options, input, outcome, images);
-  RegisterStacks<2> stacks(stack_sources(input, outcome, images));
+  ReportStacks<2> stacks(stack_sources(input, outcome, images));
   write_pictures(output, input, outcome, images, stacks.jobs());
   output.write_text("config.toml", config);
   report.end_stage("writing");

@@ -35,7 +35,7 @@ Polyline read_pectoral_line(const std::string& file, RunReport& report) {
 }
 
 /// Looks for film, breast, skin line and muscle.
-MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const Image<float, 2>& image,
+MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const ReadImage<2>& read,
                             const std::string& file, bool is_fixed, std::vector<std::string>& notes,
                             RunReport& report) {
   MammogramOptions wanted;
@@ -43,12 +43,13 @@ MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const Image<fl
   wanted.threshold = options.threshold;
   wanted.force = options.force;
   // Where --spacing was for another file, this one's own size stands in the raster.
-  if (!options.spacing.empty()) wanted.frame.pixel_size_mm = image.raster().spacing.x();
+  if (!options.spacing.empty()) wanted.frame.pixel_size_mm = read.image.raster().spacing.x();
+  wanted.frame.spacing_known = read.spacing_known;
   if (options.pectoral_source() == "none") wanted.pectoral_search = PectoralSearch::kNone;
   if (is_fixed && options.pectoral_is_file()) {
     wanted.pectoral_line = read_pectoral_line(*options.pectoral, report);
   }
-  MammogramAnatomy anatomy = analyse_mammogram(image, wanted);
+  MammogramAnatomy anatomy = analyse_mammogram(read.image, wanted);
   for (const std::string& note : anatomy.notes) notes.push_back(file + ": " + note);
   for (const std::string& warning : anatomy.warnings) report.add_warning(file + ": " + warning);
   return anatomy;
@@ -56,10 +57,9 @@ MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const Image<fl
 
 void look_at_mammograms(const ElasticCommandOptions& options, ElasticInput& input,
                         RunReport& report) {
-  input.fixed_anatomy =
-      anatomy_of(options, input.fixed.image, options.fixed, true, input.notes, report);
+  input.fixed_anatomy = anatomy_of(options, input.fixed, options.fixed, true, input.notes, report);
   input.moving_anatomy =
-      anatomy_of(options, input.moving.image, options.moving, false, input.notes, report);
+      anatomy_of(options, input.moving, options.moving, false, input.notes, report);
   MammogramAnatomy &fixed = *input.fixed_anatomy, &moving = *input.moving_anatomy;
   input.mirrored = options.mirror == "yes" ||
                    (options.mirror == "auto" && fixed.breast.side != moving.breast.side);

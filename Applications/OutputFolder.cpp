@@ -1,5 +1,7 @@
 #include "Applications/OutputFolder.h"
 
+#include <charconv>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +20,17 @@ void remove_unfinished(const fs::path& folder, std::error_code& error) {
     if (TemporaryFolder::is_one(entry.path())) unfinished.push_back(entry);
   }
   for (const fs::path& path : unfinished) fs::remove_all(path, error);
+}
+
+/// The number in a file's name "PREFIX3.mha", written without zeros before it.
+std::optional<std::size_t> number_behind(const std::string& prefix, const std::string& file) {
+  if (!file.starts_with(prefix)) return std::nullopt;
+  const char* const begin = file.data() + prefix.size();
+  const char* const end = file.data() + file.size();
+  std::size_t number = 0;
+  const auto [rest, error] = std::from_chars(begin, end, number);
+  if (error != std::errc() || *begin == '0' || rest == end || *rest != '.') return std::nullopt;
+  return number;
 }
 
 }  // namespace
@@ -82,6 +95,16 @@ void OutputFolder::remove(const std::string& name) const {
   check_is_no_input(name);
   std::error_code ignored;
   fs::remove(file(name), ignored);
+}
+
+void OutputFolder::remove_numbered(const std::string& name, std::size_t first) const {
+  std::vector<std::string> earlier;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+    const std::string file = entry.path().filename().string();
+    if (number_behind(name + "-", file).value_or(0) >= first) earlier.push_back(file);
+  }
+  for (const std::string& file : earlier) remove(file);
 }
 
 void OutputFolder::write_text(const std::string& name, const std::string& text) const {

@@ -132,30 +132,28 @@ Json body_list(const Phantom& phantom) {
 
 template <int Dim>
 void write_images(PhantomFiles& files, const PhantomImages<Dim>& phantom) {
-  using Path = std::filesystem::path;
-  const auto write = [&](const char* name, const std::function<void(const Path&)>& writer) {
-    files.write(name, writer);
-  };
-  write("fixed.mha", [&](const Path& p) { write_image(p, phantom.fixed, PixelType::kFloat); });
-  write("moving.mha", [&](const Path& p) { write_image(p, phantom.moving, PixelType::kFloat); });
-  write("truth.mha", [&](const Path& p) { write_displacement_field(p, phantom.displacement); });
+  using Path = PhantomFiles::Path;
+  files.write("fixed.mha",
+              [&](const Path& p) { write_image(p, phantom.fixed, PixelType::kFloat); });
+  files.write("moving.mha",
+              [&](const Path& p) { write_image(p, phantom.moving, PixelType::kFloat); });
+  files.write("truth.mha",
+              [&](const Path& p) { write_displacement_field(p, phantom.displacement); });
 }
 
 void write_bodies(PhantomFiles& files, const Phantom& phantom) {
-  using Path = std::filesystem::path;
-  const auto write = [&](const char* name, const std::function<void(const Path&)>& writer) {
-    files.write(name, writer);
-  };
+  using Path = PhantomFiles::Path;
   if (!phantom.labels.empty()) {
-    write("labels.mha", [&](const Path& p) { write_labels(p, phantom.labels); });
-    write("moving-labels.mha", [&](const Path& p) { write_labels(p, phantom.moving_labels); });
+    files.write("labels.mha", [&](const Path& p) { write_labels(p, phantom.labels); });
+    files.write("moving-labels.mha",
+                [&](const Path& p) { write_labels(p, phantom.moving_labels); });
   }
   if (!phantom.feature_lines.empty()) {
-    write("feature-lines.csv",
-          [&](const Path& p) { write_feature_lines(p, phantom.feature_lines); });
+    files.write("feature-lines.csv",
+                [&](const Path& p) { write_feature_lines(p, phantom.feature_lines); });
   }
   if (!phantom.landmarks.empty()) {
-    write("landmarks.csv", [&](const Path& p) { write_landmarks(p, phantom.landmarks); });
+    files.write("landmarks.csv", [&](const Path& p) { write_landmarks(p, phantom.landmarks); });
   }
 }
 

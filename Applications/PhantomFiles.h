@@ -15,13 +15,13 @@ class PhantomFiles {
   using Path = std::filesystem::path;
   explicit PhantomFiles(const std::string& folder) : output_(folder) {}
 
-  void write(const char* name, const std::function<void(const Path&)>& writer) {
+  void write(const std::string& name, const std::function<void(const Path&)>& writer) {
     output_.write(name, writer);
-    names_.emplace_back(name);
+    names_.push_back(name);
   }
-  void write_text(const char* name, const std::string& text) {
+  void write_text(const std::string& name, const std::string& text) {
     output_.write_text(name, text);
-    names_.emplace_back(name);
+    names_.push_back(name);
   }
   const OutputFolder& output() const { return output_; }
   const std::vector<std::string>& names() const { return names_; }

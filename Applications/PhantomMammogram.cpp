@@ -27,7 +27,7 @@ void write_line(PhantomFiles& files, const std::string& name, const Polyline& po
   if (points.size() < 2) return;
   FeatureLine line;
   line.points = points;
-  files.write(name.c_str(), [&](const Path& p) { write_feature_lines(p, {line}); });
+  files.write(name, [&](const Path& p) { write_feature_lines(p, {line}); });
 }
 
 void write_marks(const Path& path, const std::vector<DuctMark>& marks) {
@@ -45,17 +45,16 @@ void write_marks(const Path& path, const std::vector<DuctMark>& marks) {
 }
 
 // @param prefix  "" or "moving-".
-void write_one(PhantomFiles& files, const char* image_name, const std::string& prefix,
+void write_one(PhantomFiles& files, const std::string& image_name, const std::string& prefix,
                const MammogramImage& image, PixelType type) {
   files.write(image_name, [&](const Path& p) { write_image(p, image.pixels, type); });
-  const auto name = [&](const char* rest) { return prefix + rest; };
-  files.write(name("mask.mha").c_str(), [&](const Path& p) { write_mask(p, image.mask); });
+  files.write(prefix + "mask.mha", [&](const Path& p) { write_mask(p, image.mask); });
   if (!image.labels.empty()) {
-    files.write(name("labels.mha").c_str(), [&](const Path& p) { write_labels(p, image.labels); });
+    files.write(prefix + "labels.mha", [&](const Path& p) { write_labels(p, image.labels); });
   }
-  write_line(files, name("outline.csv"), image.outline);
-  write_line(files, name("feature-lines.csv"), image.pectoral);
-  files.write(name("branches.csv").c_str(), [&](const Path& p) { write_marks(p, image.marks); });
+  write_line(files, prefix + "outline.csv", image.outline);
+  write_line(files, prefix + "feature-lines.csv", image.pectoral);
+  files.write(prefix + "branches.csv", [&](const Path& p) { write_marks(p, image.marks); });
 }
 
 Json point(const Point<2>& p) { return {p.x(), p.y()}; }

@@ -211,7 +211,7 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   const Evaluation<Dim> evaluation = evaluate_outcome(options, input, outcome, images);
   report.end_stage("results");
   write_results(output, options, input, outcome, images);
-  RegisterStacks<Dim> stacks(stack_sources(options, input, outcome, images));
+  ReportStacks<Dim> stacks(stack_sources(options, input, outcome, images));
   write_pictures(output, options, input, outcome, images, stacks.jobs());
   output.write_text("config.toml", config);
   report.end_stage("writing");

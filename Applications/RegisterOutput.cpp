@@ -84,6 +84,7 @@ void write_results(const OutputFolder& output, const RegisterOptions& options,
     write_warped(output, message("warped-", c + 1), options.moving[c], input.further_moving[c - 1],
                  images.further_warped[c - 1]);
   }
+  output.remove_numbered("warped", options.num_channels() + 1);
   output.write("displacement.mha",
                [&](const Path& file) { write_displacement_field(file, images.displacement); });
   output.write("jacobian.mha", [&](const Path& file) {

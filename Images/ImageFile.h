@@ -51,6 +51,7 @@ struct ReadImage {
   Image<float, Dim> image;
   ImageFormat format = ImageFormat::kPng;
   PixelType pixel_type = PixelType::kFloat;  ///< in the file
+  bool spacing_known = false;                ///< the file tells it; otherwise it is taken as 1 mm
   std::vector<std::string> notes;            ///< for the user, such as "colour converted to grey"
 };
 

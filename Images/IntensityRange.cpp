@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "Core/Parallel.h"
+#include "Core/Quantiles.h"
 #include "Images/MaskedPixels.h"
 
 namespace crease {
@@ -67,9 +67,7 @@ double pixel_of_rank(const Image<float, Dim>& image, const Mask<Dim>* mask,
         });
       },
       1);
-  const auto place = in_bin.values.begin() + rank;
-  std::nth_element(in_bin.values.begin(), place, in_bin.values.end());
-  return static_cast<double>(*place);
+  return static_cast<double>(value_of_rank(std::span(in_bin.values), rank));
 }
 
 }  // namespace
@@ -116,9 +114,7 @@ IntensityRange intensity_percentiles(const Image<float, Dim>& image,
       1);
   std::int64_t count = 0;
   for (std::int64_t c : histogram.counts) count += c;
-  const auto rank = [&](double percent) {
-    return static_cast<std::int64_t>(std::lround(percent / 100 * static_cast<double>(count - 1)));
-  };
+  const auto rank = [&](double percent) { return nearest_rank(count, percent / 100); };
   return {pixel_of_rank(image, mask, histogram, rank(lower)),
           pixel_of_rank(image, mask, histogram, rank(upper))};
 }

@@ -102,6 +102,7 @@ ReadImage<Dim> read_image(const std::filesystem::path& path) {
   ReadImage<Dim> result;
   result.format = image_format(path);
   result.pixel_type = raw.type;
+  result.spacing_known = raw.spacing_known;
   make_grey(path, raw);
   result.notes = raw.notes;
   result.image = Image<float, Dim>(raster);

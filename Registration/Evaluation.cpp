@@ -8,6 +8,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Core/Quantiles.h"
 #include "Images/MakeInterpolator.h"
 #include "Images/RasterCheck.h"
 #include "Registration/EvaluationLabels.h"
@@ -296,13 +297,6 @@ void evaluate_with_labels(const EvaluationInput<Dim>& input, const Mask<Dim>& co
   result.labels = compare_labels(labels, warped);
 }
 
-double percentile(const std::vector<double>& sorted, double percent) {
-  const double rank = percent / 100 * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (rank - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
 }  // namespace
 
 ErrorStatistics error_statistics(std::vector<double> errors) {
@@ -316,8 +310,8 @@ ErrorStatistics error_statistics(std::vector<double> errors) {
   }
   result.mean /= static_cast<double>(errors.size());
   result.rms = std::sqrt(result.rms / static_cast<double>(errors.size()));
-  result.median = percentile(errors, 50);
-  result.percentile_95 = percentile(errors, 95);
+  result.median = interpolated_quantile(errors, 0.5);
+  result.percentile_95 = interpolated_quantile(errors, 0.95);
   result.maximum = errors.back();
   return result;
 }

@@ -74,7 +74,8 @@ double default_roughness_weight(double length) {
 /// From coarse to fine.
 struct Schedule {
   int levels = 3;  ///< image pyramid, a factor of 2 each; fewer for small images
-  /// The energy named "bending", or a transform's roughness, weighs this much more per coarser level.
+  /// The energy named "bending", or a transform's roughness, weighs this much more per coarser level; the one
+  /// named "elastic" by the square root of it.
   double level_bending = 4;
   /// Try a start fitted to dense optical flow (2D, metrics that expect similar intensities).
   bool optical_flow = true;

@@ -164,7 +164,7 @@ StackSources<2> stack_sources(const ElasticInput& input, const ElasticOutcome& o
 }
 
 std::string elastic_report(const ElasticStory& story, const Json& result, const std::string& config,
-                           RegisterStacks<2>& stacks) {
+                           ReportStacks<2>& stacks) {
   HtmlReport report(head_of(story, result));
   stacks.add_to(report);
   add_load_steps(story, report);

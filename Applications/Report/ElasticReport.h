@@ -4,7 +4,7 @@
 #include <string>
 
 #include "Applications/ElasticFigures.h"
-#include "Applications/Report/RegisterStacks.h"
+#include "Applications/Report/ReportStacks.h"
 
 namespace crease {
 
@@ -16,6 +16,6 @@ StackSources<2> stack_sources(const ElasticInput& input, const ElasticOutcome& o
 /// stacks are used up.
 /// @param result  what result.json holds. @param config  what config.toml holds.
 std::string elastic_report(const ElasticStory& story, const nlohmann::ordered_json& result,
-                           const std::string& config, RegisterStacks<2>& stacks);
+                           const std::string& config, ReportStacks<2>& stacks);
 
 }  // namespace crease

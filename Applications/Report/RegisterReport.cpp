@@ -313,7 +313,23 @@ void add_bodies(const RegisterStory<Dim>& story, HtmlReport& report) {
 }  // namespace
 
 template <int Dim>
-std::string register_report(const RegisterStory<Dim>& story, RegisterStacks<Dim>& stacks) {
+StackSources<Dim> stack_sources(const RegisterOptions& options, const RegisterInput<Dim>& input,
+                                const RegisterOutcome<Dim>& outcome,
+                                const RegisterImages<Dim>& images) {
+  StackSources<Dim> sources{
+      input.fixed.image,  input.moving.image, images.warped, images.before, images,
+      *outcome.transform, input.landmarks};
+  if (outcome.domain) sources.lines = outcome.domain->feature_lines;
+  sources.equal_intensities = options.expects_equal_intensities();
+  for (std::size_t c = 0; c < images.further_warped.size(); ++c) {
+    sources.channels.push_back(
+        {input.further_fixed[c].image, input.further_moving[c].image, images.further_warped[c]});
+  }
+  return sources;
+}
+
+template <int Dim>
+std::string register_report(const RegisterStory<Dim>& story, ReportStacks<Dim>& stacks) {
   HtmlReport report(head_of(story));
   stacks.add_to(report);
   add_optimisation(story, report);
@@ -324,7 +340,11 @@ std::string register_report(const RegisterStory<Dim>& story, RegisterStacks<Dim>
   return report.html();
 }
 
-template std::string register_report<2>(const RegisterStory<2>&, RegisterStacks<2>&);
-template std::string register_report<3>(const RegisterStory<3>&, RegisterStacks<3>&);
+template StackSources<2> stack_sources<2>(const RegisterOptions&, const RegisterInput<2>&,
+                                          const RegisterOutcome<2>&, const RegisterImages<2>&);
+template StackSources<3> stack_sources<3>(const RegisterOptions&, const RegisterInput<3>&,
+                                          const RegisterOutcome<3>&, const RegisterImages<3>&);
+template std::string register_report<2>(const RegisterStory<2>&, ReportStacks<2>&);
+template std::string register_report<3>(const RegisterStory<3>&, ReportStacks<3>&);
 
 }  // namespace crease

@@ -12,11 +12,10 @@ namespace {
 
 constexpr std::uintmax_t kLongestHeader = 1 << 20;  // bytes
 
-using Fields = std::map<std::string, std::string, std::less<>>;
-
 /// Reads "Key = value" lines up to ElementDataFile, the last one.
-Fields read_fields(const std::filesystem::path& path, std::string_view text, std::size_t& at) {
-  Fields fields;
+HeaderFields read_fields(const std::filesystem::path& path, std::string_view text,
+                         std::size_t& at) {
+  HeaderFields fields;
   while (!fields.contains("ElementDataFile")) {
     std::optional<std::string_view> line = next_line(text, at);
     if (!line && at < text.size()) {  // a header of its own need not end its last line
@@ -32,11 +31,6 @@ Fields read_fields(const std::filesystem::path& path, std::string_view text, std
     fields[std::string(trimmed(line->substr(0, equals)))] = trimmed(line->substr(equals + 1));
   }
   return fields;
-}
-
-std::string value_of(const Fields& fields, std::string_view key, const char* otherwise) {
-  const auto found = fields.find(key);
-  return found == fields.end() ? otherwise : found->second;
 }
 
 bool is_true(const std::string& value) {
@@ -62,13 +56,51 @@ std::uintmax_t bytes_behind(const std::filesystem::path& path, std::uintmax_t be
   return size - std::min<std::uintmax_t>(size, before);
 }
 
+/// What a header promises.
+struct Pixels {
+  std::uint64_t values, channels, bytes;
+};
+
+/// Whether the file of the pixels, which begin `at`, holds them all.
+void check_pixels(const std::filesystem::path& path, const HeaderFields& fields, std::size_t at,
+                  const std::filesystem::path& data_path, const Pixels& pixels) {
+  const bool compressed = is_true(value_of(fields, "CompressedData", "False"));
+  if (!compressed && is_true(value_of(fields, "BinaryData", "True"))) {
+    const long skipped = std::atol(value_of(fields, "HeaderSize", "0").c_str());
+    const auto before = data_path == path ? at : static_cast<std::uint64_t>(std::max(0l, skipped));
+    const auto found = bytes_behind(data_path, before);
+    if (found < pixels.bytes) fail_truncated(data_path, pixels.bytes, found);
+    return;
+  }
+  const auto data = read_bytes(data_path);
+  const Bytes content = Bytes(data).subspan(at);
+  if (compressed) {
+    if (inflated_size(content) < pixels.bytes) {
+      fail(data_path,
+           "the compressed pixels are truncated or damaged; copy or export the file again");
+    }
+  } else if (pixels.channels >
+             1) {  // ITK reads only the first of them and leaves the rest as it finds it
+    fail(path, message("pixels of ", pixels.channels,
+                       " values each, written as text, are not supported; "
+                       "write them as binary data (BinaryData = True)"));
+  } else {
+    const auto found =
+        count_words(ByteReader(content, false).text(0, content.size()), pixels.values);
+    if (found < pixels.values) {
+      fail(data_path,
+           message("the file is truncated: it needs ", pixels.values, " numbers and has ", found));
+    }
+  }
+}
+
 }  // namespace
 
-void check_meta_image(const std::filesystem::path& path) {
+bool check_meta_image(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path, kLongestHeader);
   const std::string_view text = ByteReader(bytes, false).text(0, bytes.size());
   std::size_t at = 0;
-  const Fields fields = read_fields(path, text, at);
+  const HeaderFields fields = read_fields(path, text, at);
   const auto pixels = product_of_sizes(value_of(fields, "DimSize", ""));
   const auto channels = product_of_sizes(value_of(fields, "ElementNumberOfChannels", "1"));
   if (!fields.contains("DimSize") || pixels == 0 || channels == 0 ||
@@ -88,32 +120,8 @@ void check_meta_image(const std::filesystem::path& path) {
   if (!local && !std::filesystem::exists(data_path)) {
     fail(path, message("its pixels, the file ", data_path.string(), ", are missing"));
   }
-  const bool compressed = is_true(value_of(fields, "CompressedData", "False"));
-  if (!compressed && is_true(value_of(fields, "BinaryData", "True"))) {
-    const long skipped = std::atol(value_of(fields, "HeaderSize", "0").c_str());
-    const auto before = local ? at : static_cast<std::uint64_t>(std::max(0l, skipped));
-    const auto found = bytes_behind(data_path, before);
-    if (found < needed) fail_truncated(data_path, needed, found);
-    return;
-  }
-  const auto data = read_bytes(data_path);
-  const Bytes content = Bytes(data).subspan(local ? at : 0);
-  if (compressed) {
-    if (inflated_size(content) < needed) {
-      fail(data_path,
-           "the compressed pixels are truncated or damaged; copy or export the file again");
-    }
-  } else if (channels > 1) {  // ITK reads only the first of them and leaves the rest as it finds it
-    fail(path, message("pixels of ", channels,
-                       " values each, written as text, are not supported; "
-                       "write them as binary data (BinaryData = True)"));
-  } else {
-    const auto found = count_words(ByteReader(content, false).text(0, content.size()), values);
-    if (found < values) {
-      fail(data_path,
-           message("the file is truncated: it needs ", values, " numbers and has ", found));
-    }
-  }
+  check_pixels(path, fields, local ? at : 0, data_path, {values, channels, needed});
+  return fields.contains("ElementSpacing") || fields.contains("ElementSize");
 }
 
 }  // namespace crease

@@ -10,8 +10,6 @@
 namespace crease {
 namespace {
 
-using Fields = std::map<std::string, std::string, std::less<>>;
-
 std::string lower_case(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -19,10 +17,11 @@ std::string lower_case(std::string_view text) {
 }
 
 /// Reads "field: value" lines up to an empty line or, in a header of its own, the end.
-Fields read_fields(const std::filesystem::path& path, std::string_view text, std::size_t& at) {
+HeaderFields read_fields(const std::filesystem::path& path, std::string_view text,
+                         std::size_t& at) {
   if (!text.starts_with("NRRD000")) fail(path, "this is not an NRRD file");
   next_line(text, at);
-  Fields fields;
+  HeaderFields fields;
   while (at < text.size()) {
     const auto line = next_line(text, at);
     if (line && line->empty()) return fields;
@@ -37,11 +36,6 @@ Fields read_fields(const std::filesystem::path& path, std::string_view text, std
     fail(path, "the header of the NRRD file is truncated");
   }
   return fields;
-}
-
-std::string value_of(const Fields& fields, std::string_view key, const char* otherwise) {
-  const auto found = fields.find(key);
-  return found == fields.end() ? otherwise : found->second;
 }
 
 std::uint64_t bytes_of_type(const std::filesystem::path& path, const std::string& type) {
@@ -107,10 +101,10 @@ void check_data(const std::filesystem::path& path, const std::string& encoding, 
 
 }  // namespace
 
-void check_nrrd(const std::filesystem::path& path) {
+bool check_nrrd(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path);
   std::size_t at = 0;
-  const Fields fields = read_fields(path, ByteReader(bytes, false).text(0, bytes.size()), at);
+  const HeaderFields fields = read_fields(path, ByteReader(bytes, false).text(0, bytes.size()), at);
   const std::string sizes = value_of(fields, "sizes", "");
   const auto values = product_of_sizes(sizes);
   if (sizes.empty() || values == 0 ||
@@ -120,6 +114,8 @@ void check_nrrd(const std::filesystem::path& path) {
   }
   const auto needed = values * bytes_of_type(path, lower_case(value_of(fields, "type", "missing")));
   const std::string encoding = lower_case(value_of(fields, "encoding", "missing"));
+
+  const bool tells_spacing = fields.contains("spacings") || fields.contains("space directions");
 
   std::string name = value_of(fields, "data file", "");
   if (name.empty()) name = value_of(fields, "datafile", "");
@@ -132,7 +128,7 @@ void check_nrrd(const std::filesystem::path& path) {
   }
   if (name.empty()) {
     check_data(path, encoding, Bytes(bytes).subspan(at), values, needed);
-    return;
+    return tells_spacing;
   }
   const auto data_path = path.parent_path() / name;
   if (!std::filesystem::exists(data_path)) {
@@ -142,6 +138,7 @@ void check_nrrd(const std::filesystem::path& path) {
   const auto skip = std::strtoull(value_of(fields, "byte skip", "0").c_str(), nullptr, 10);
   const auto skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, data.size()));
   check_data(data_path, encoding, Bytes(data).subspan(skipped), values, needed);
+  return tells_spacing;
 }
 
 }  // namespace crease

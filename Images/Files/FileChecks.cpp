@@ -5,29 +5,31 @@
 
 namespace crease {
 
-void check_file(const std::filesystem::path& path, ImageFormat format) {
+bool check_file(const std::filesystem::path& path, ImageFormat format) {
   switch (format) {
     case ImageFormat::kPng:
-      return check_png(path);
+      check_png(path);
+      return false;
     case ImageFormat::kJpeg:
       read_jpeg(path, true);
-      return;
+      return false;
     case ImageFormat::kTiff:
-      return check_tiff(path);
+      check_tiff(path);
+      return false;
     case ImageFormat::kPgm:
       read_pgm(path, true);
-      return;
+      return false;
     case ImageFormat::kDicom:
-      check_dicom(path);
-      return;
+      return check_dicom(path).has_spacing;
     case ImageFormat::kNifti:
       check_nifti(path);
-      return;
+      return true;
     case ImageFormat::kMetaImage:
       return check_meta_image(path);
     case ImageFormat::kNrrd:
       return check_nrrd(path);
   }
+  return false;
 }
 
 }  // namespace crease

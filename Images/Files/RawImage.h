@@ -16,6 +16,7 @@ struct RawImage {
   std::vector<int> size;
   std::vector<double> spacing, origin;  // mm, one entry per axis
   std::vector<double> direction;        // unit vectors along the axes, one after the other
+  bool spacing_known = false;           // the file tells it; otherwise it is 1 mm
   PixelType type = PixelType::kUint8;
   int num_components = 1;
   bool colour = false;                // the components are red, green, blue

@@ -142,6 +142,7 @@ RawImage read_nifti_by_name(const std::filesystem::path& path, bool with_pixels)
 RawImage read_nifti(const std::filesystem::path& path, bool with_pixels) {
   const NiftiFacts facts = check_nifti(path);
   RawImage image = read_nifti_by_name(path, with_pixels);
+  image.spacing_known = true;
   if (!with_pixels || facts.not_finite.empty()) return image;
   // In the file a whole image of each component follows the other; here they stand side by side.
   const std::int64_t pixels = image.num_pixels();
@@ -163,11 +164,14 @@ RawImage decode(const std::filesystem::path& path, ImageFormat format, bool with
   if (format == ImageFormat::kJpeg) return read_jpeg(path, with_pixels);
   if (format == ImageFormat::kNifti) return read_nifti(path, with_pixels);
   if (format != ImageFormat::kDicom) {
-    check_file(path, format);
-    return read_with_itk(path, format, with_pixels);
+    const bool spacing_known = check_file(path, format);
+    RawImage image = read_with_itk(path, format, with_pixels);
+    image.spacing_known = spacing_known;
+    return image;
   }
   const DicomFacts facts = check_dicom(path);
   RawImage image = read_with_itk(path, format, with_pixels);
+  image.spacing_known = facts.has_spacing;
   if (!facts.has_spacing) {
     image.notes.emplace_back("the file does not say how large its pixels are: 1 mm is assumed");
   }

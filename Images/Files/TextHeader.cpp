@@ -20,6 +20,11 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
+std::string value_of(const HeaderFields& fields, std::string_view key, const char* otherwise) {
+  const auto found = fields.find(key);
+  return found == fields.end() ? otherwise : found->second;
+}
+
 std::uint64_t count_words(std::string_view text, std::uint64_t limit) {
   std::uint64_t count = 0;
   bool inside = false;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +14,10 @@ namespace crease {
 std::optional<std::string_view> next_line(std::string_view text, std::size_t& at);
 
 std::string_view trimmed(std::string_view text);
+
+/// What a text header says, by the names of its fields.
+using HeaderFields = std::map<std::string, std::string, std::less<>>;
+std::string value_of(const HeaderFields& fields, std::string_view key, const char* otherwise);
 
 /// Numbers separated by white space in the text, no more than `limit`.
 std::uint64_t count_words(std::string_view text, std::uint64_t limit);

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "Core/Error.h"
+#include "Transforms/Domains/ArcLength.h"
 #include "Transforms/Domains/MeshTopology.h"
-#include "Transforms/Domains/Polygon.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
 namespace crease {
@@ -37,26 +36,6 @@ std::vector<Polyline> border_rings(const SimplexMesh<2>& mesh) {
     if (ring.size() >= 3) rings.push_back(std::move(ring));
   }
   return rings;
-}
-
-/// Where a ring is nearest to a point.
-struct RingPlace {
-  double distance = std::numeric_limits<double>::infinity();
-  double arc = 0;  // length along the ring
-};
-
-RingPlace nearest_on(const Polyline& ring, const Point<2>& p) {
-  RingPlace nearest;
-  double arc = 0;
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Point<2>&a = ring[k], &b = ring[(k + 1) % ring.size()];
-    const Point<2> q = closest_point_on_segment(p, a, b);
-    if (const double distance = (q - p).norm(); distance < nearest.distance) {
-      nearest = {distance, arc + (q - a).norm()};
-    }
-    arc += (b - a).norm();
-  }
-  return nearest;
 }
 
 /// Whether the segments a b and c d cross in inner points of both.
@@ -141,8 +120,8 @@ std::vector<std::vector<int>> pairs_along_border(const Landmarks<2>& pairs,
   for (const auto& ring : border_rings(triangular->net().mesh)) {
     std::vector<Place> places;
     for (std::size_t j = 0; j < pairs.fixed.size(); ++j) {
-      const RingPlace nearest = nearest_on(ring, pairs.fixed[j]);
-      if (nearest.distance <= near_mm) places.push_back({nearest.arc, static_cast<int>(j)});
+      const NearestPlace nearest = nearest_place(ring, true, pairs.fixed[j]);
+      if (nearest.distance <= near_mm) places.push_back({nearest.length, static_cast<int>(j)});
     }
     if (places.size() < 2) continue;
     std::ranges::sort(places, {}, &Place::arc);

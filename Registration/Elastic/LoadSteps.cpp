@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Core/Quantiles.h"
 #include "Registration/Elastic/ElasticEquilibrium.h"
 #include "Registration/Elastic/ElasticPairs.h"
 #include "Registration/LandmarkConstraints.h"
@@ -42,12 +43,10 @@ void warn_of_reactions(const LinearConstraints& constraints, double suspicious,
                        LoadStepResult& result) {
   Eigen::VectorXd sizes = result.reactions.rowwise().norm();
   if (sizes.size() < 3) return;
-  std::vector<double> sorted(sizes.begin(), sizes.end());
-  std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
-  const double median = sorted[sorted.size() / 2];
+  const double usual = median(std::vector<double>(sizes.begin(), sizes.end()));
   for (Eigen::Index r = 0; r < sizes.size(); ++r) {
-    if (!(median > 0) || sizes[r] <= suspicious * median) continue;
-    result.warnings.push_back(message(constraints.name(r), " is held by ", sizes[r] / median,
+    if (!(usual > 0) || sizes[r] <= suspicious * usual) continue;
+    result.warnings.push_back(message(constraints.name(r), " is held by ", sizes[r] / usual,
                                       " times the median reaction (", sizes[r],
                                       " E mm): it may be wrong"));
   }

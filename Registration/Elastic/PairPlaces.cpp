@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <limits>
 #include <numeric>
 
 #include "Core/Error.h"
+#include "Core/Quantiles.h"
+#include "Transforms/Domains/ArcLength.h"
 
 namespace crease {
 namespace {
@@ -28,24 +29,12 @@ std::string place(const Point<2>& p) {
 }
 
 Point<2> nearest_on_rings(const RegionOfInterest& region, const Point<2>& p) {
-  Point<2> nearest = p;
-  double least = std::numeric_limits<double>::infinity();
+  NearestPlace nearest{.point = p};
   for (const Polyline& ring : region.rings()) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point<2> q = closest_point_on_segment(p, ring[i], ring[(i + 1) % ring.size()]);
-      if (const double distance = (q - p).norm(); distance < least) {
-        least = distance;
-        nearest = q;
-      }
-    }
+    const NearestPlace place = nearest_place(ring, true, p);
+    if (place.distance < nearest.distance) nearest = place;
   }
-  return nearest;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return nearest.point;
 }
 
 /// The pairs whose fixed points are nearest to that of pair i.

@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "Core/Parallel.h"
+#include "Images/OctagonFilter.h"
 #include "Images/OpenCvView.h"
-#include "Registration/Mammogram/OctagonFilter.h"
 
 namespace crease {
 namespace {
@@ -19,8 +19,8 @@ int in_pixels(double mm, const Raster<2>& raster) {
 [[noreturn]] void fail(const BreastSegmentationOptions& options, const GreyHistogram& histogram,
                        const std::string& reason) {
   throw NoBreastFound(message("no breast found in ", options.name, ": ", reason,
-                              "; give the grey value of its edge (--threshold) or a mask of it "
-                              "(--mask)."),
+                              "; give the grey value of its edge (--threshold), or an outline "
+                              "and pairs of points (--roi FILE, --pairs FILE)."),
                       histogram);
 }
 

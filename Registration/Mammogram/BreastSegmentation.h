@@ -52,14 +52,14 @@ class NoBreastFound : public InvalidInput {
   GreyHistogram histogram;
 };
 
-/// Pixels above the histogram's valley, closed and opened by an octagon (beyond the frame there is background
-/// for closing and breast for opening, so that nothing is lost at the chest wall), the largest 4-connected
-/// component that touches the chest wall's side, its holes filled. Labels fall away because they do not touch
-/// the breast; a bright rectangle that does is cut off by a wider opening, with a warning.
+/// Pixels above the threshold, or the histogram's valley, closed and opened by an octagon (beyond the frame there
+/// is background for closing and breast for opening, so that nothing is lost at the chest wall), the largest
+/// 4-connected component that touches the chest wall's side, its holes filled. Labels fall away because they do
+/// not touch the breast; bright rectangles that do are cut off by wider openings, with a warning.
 ///
-/// @param image  the frame's: bright tissue, square pixels.
+/// @param image  the frame's: bright tissue, pixels about square.
 /// @throws NoBreastFound when the area is out of range or the breast does not touch exactly one vertical
-/// side; the message says which, and suggests a threshold or a mask of one's own.
+/// side; the message says which, and how to do without the search.
 BreastSegmentation segment_breast(const Image<float, 2>& image,
                                   const BreastSegmentationOptions& options = {});
 

@@ -4,43 +4,26 @@
 #include <cmath>
 
 #include "Core/Error.h"
+#include "Transforms/Domains/ArcLength.h"
 
 namespace crease {
 namespace {
 
-/// A polyline as a function of the share t of its length.
-class ArcLength {
+/// A contour as a function of the share t of its length.
+class ContourByShare {
  public:
-  explicit ArcLength(const Polyline& points) : points_(points), lengths_(points.size(), 0.0) {
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      lengths_[i] = lengths_[i - 1] + (points[i] - points[i - 1]).norm();
-    }
-  }
+  explicit ContourByShare(const Polyline& points)
+      : points_(points), lengths_(arc_lengths(points)) {}
   double length() const { return lengths_.back(); }
-  Point<2> at(double t) const {
-    const double wanted = t * length();
-    const auto above = std::upper_bound(lengths_.begin(), lengths_.end(), wanted);
-    const auto i =
-        std::clamp<std::ptrdiff_t>(above - lengths_.begin(), 1, std::ssize(lengths_) - 1);
-    const double step = lengths_[i] - lengths_[i - 1];
-    const double share = step > 0 ? std::clamp((wanted - lengths_[i - 1]) / step, 0.0, 1.0) : 0.0;
-    return points_[i - 1] + share * (points_[i] - points_[i - 1]);
-  }
-  /// Where the polyline is nearest to a point.
+  Point<2> at(double t) const { return point_at_length(points_, lengths_, t * length()); }
+  /// Where the contour is nearest to a point.
   double nearest(const Point<2>& p) const {
-    double best = 0, smallest = HUGE_VAL;
-    for (std::size_t i = 1; i < points_.size(); ++i) {
-      const Point<2> q = closest_point_on_segment(p, points_[i - 1], points_[i]);
-      if ((p - q).norm() >= smallest) continue;
-      smallest = (p - q).norm();
-      best = lengths_[i - 1] + (q - points_[i - 1]).norm();
-    }
-    return best / length();
+    return nearest_place(points_, false, p).length / length();
   }
 
  private:
   const Polyline& points_;
-  std::vector<double> lengths_;  // from the first point, mm
+  std::vector<double> lengths_;
 };
 
 void check(const Polyline& fixed, const Polyline& moving, const ContourPairOptions& options) {
@@ -75,7 +58,7 @@ ContourPairs contour_pairs(const Polyline& fixed, const Polyline& moving,
                            const std::optional<Point<2>>& moving_nipple,
                            const ContourPairOptions& options) {
   check(fixed, moving, options);
-  const ArcLength on_fixed(fixed), on_moving(moving);
+  const ContourByShare on_fixed(fixed), on_moving(moving);
   ContourPairs pairs;
   pairs.fixed_length_mm = on_fixed.length();
   pairs.moving_length_mm = on_moving.length();

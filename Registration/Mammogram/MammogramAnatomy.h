@@ -36,8 +36,8 @@ struct MammogramAnatomy {
   BreastSegmentation breast;  ///< the mask is on the raster of `frame.image`
   SkinContour skin;
   std::optional<PectoralMuscle> pectoral;
-  Polyline
-      region;  ///< outline of the breast: the smoothed skin line, closed along the frame; simple
+  /// Outline of the breast: the smoothed skin line, closed along the frame, or straight where that would cross it.
+  Polyline region;
   bool mirrored = false;              ///< left and right are swapped
   std::vector<std::string> notes;     ///< of all steps, for the user
   std::vector<std::string> warnings;  ///< of all steps: what the user should look at
@@ -62,8 +62,9 @@ MammogramAnatomy analyse_mammogram(const Image<float, 2>& image,
 MammogramAnatomy mirrored(const MammogramAnatomy& anatomy);
 
 /// Compares two views before they are registered; `moving` as it will be used, mirrored or not.
-/// @returns warnings: the chest walls on different sides, a pectoral muscle in one view only.
-/// @throws InvalidInput unless forced, when the contours' lengths differ by more than 40 %.
+/// @returns warnings: the chest walls on different sides, a pectoral muscle in one view only; when forced also
+/// what else would throw.
+/// @throws InvalidInput unless forced, when the contours' lengths differ by more than 40 % of the shorter one.
 std::vector<std::string> check_views(const MammogramAnatomy& fixed, const MammogramAnatomy& moving,
                                      bool force = false);
 

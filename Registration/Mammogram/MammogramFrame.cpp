@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "Core/Error.h"
-#include "Core/Parallel.h"
+#include "Core/Quantiles.h"
 #include "Images/ImageFile.h"
 #include "Images/IntensityRange.h"
 #include "Images/OpenCvView.h"
@@ -19,12 +19,6 @@ struct Span {
   int size() const { return last - first; }
 };
 using Frame = std::array<Span, 2>;
-
-double median(std::vector<float>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Whether dark stands for dense tissue: see find_frame. Every third pixel of every third row will do.
 bool is_negative(const Image<float, 2>& image, const IntensityRange& range) {
@@ -40,54 +34,24 @@ bool is_negative(const Image<float, 2>& image, const IntensityRange& range) {
       if (to_edge > 0.25) centre.push_back(image(i, j));
     }
   }
-  const double edge = median(border), difference = edge - median(centre);
+  const double edge = median(std::move(border));
+  const double difference = edge - median(std::move(centre));
   if (std::abs(difference) > kClear * range.width()) return difference > 0;
   return edge > 0.5 * (range.lower + range.upper);
-}
-
-/// Per row and per column, the number of pixels for which `counts` holds.
-template <typename Predicate>
-std::array<std::vector<int>, 2> counts_along_axes(const Image<float, 2>& image, const Frame& frame,
-                                                  const Predicate& counted) {
-  constexpr int kStrips = 16;
-  std::array<std::vector<int>, 2> counts;
-  counts[1].assign(static_cast<std::size_t>(image.size()[1]), 0);
-  std::vector<std::vector<int>> columns(
-      kStrips, std::vector<int>(static_cast<std::size_t>(image.size()[0]), 0));
-  parallel_for(kStrips, [&](std::int64_t strip) {
-    const int height = frame[1].size();
-    auto& column = columns[static_cast<std::size_t>(strip)];
-    const int begin = frame[1].first + static_cast<int>(height * strip / kStrips);
-    const int end = frame[1].first + static_cast<int>(height * (strip + 1) / kStrips);
-    for (int j = begin; j < end; ++j) {
-      const auto row = image.row(j);
-      int sum = 0;
-      for (int i = frame[0].first; i < frame[0].last; ++i) {
-        const int one = counted(row[static_cast<std::size_t>(i)]) ? 1 : 0;
-        column[static_cast<std::size_t>(i)] += one;
-        sum += one;
-      }
-      counts[1][static_cast<std::size_t>(j)] = sum;
-    }
-  });
-  counts[0].assign(columns[0].size(), 0);
-  for (const auto& column : columns) {
-    for (std::size_t i = 0; i < column.size(); ++i) counts[0][i] += column[i];
-  }
-  return counts;
 }
 
 /// The box of rows and columns that show more than the padding.
 Frame film_in(const Image<float, 2>& image, bool negative, const IntensityRange& range,
               double share) {
   const Frame whole = {Span{0, image.size()[0]}, Span{0, image.size()[1]}};
-  const auto padding = static_cast<float>(negative ? range.upper : range.lower);
-  const auto counts = counts_along_axes(
-      image, whole, [&](float v) { return negative ? v < padding : v > padding; });
+  const cv::Mat pixels = opencv_view(image);
+  const cv::Mat shown = (negative ? pixels < range.upper : pixels > range.lower) & 1;
+  std::array<cv::Mat, 2> counts;  // of each column, of each row
+  for (int a = 0; a < 2; ++a) cv::reduce(shown, counts[a], a, cv::REDUCE_SUM, CV_32S);
   Frame film = whole;
   for (int a = 0; a < 2; ++a) {
     const double least = share * whole[1 - a].size();
-    const auto shows = [&](int i) { return counts[a][static_cast<std::size_t>(i)] > least; };
+    const auto shows = [&](int i) { return counts[a].at<int>(i) > least; };
     while (film[a].size() > 1 && !shows(film[a].first)) ++film[a].first;
     while (film[a].size() > 1 && !shows(film[a].last - 1)) --film[a].last;
   }
@@ -156,7 +120,7 @@ Raster<2> mended(Raster<2> raster, const MammogramFrameOptions& options,
                                  " mm cannot be; give a positive size."));
     }
     raster.spacing.setConstant(*options.pixel_size_mm);
-  } else if (raster.spacing == Vector<2>::Ones()) {
+  } else if (!options.spacing_known) {
     raster.spacing.setConstant(kAssumed);
     notes.push_back(message("the pixel size is not known: ", kAssumed, " mm is assumed"));
   }

@@ -12,9 +12,10 @@ namespace crease {
 
 /// How a mammogram is made ready for the search for the breast. Lengths in mm.
 struct MammogramFrameOptions {
-  /// Of both axes; unset: what the image says. A spacing of exactly 1 mm is what readers assume for files
-  /// that say nothing: then 0.2 mm, the pixel of the mini-MIAS database.
-  std::optional<double> pixel_size_mm;
+  std::optional<double> pixel_size_mm;  ///< of both axes; unset: what the image says
+  /// False: the image says nothing (ReadImage::spacing_known). Then 0.2 mm, the pixel of the mini-MIAS database,
+  /// is assumed.
+  bool spacing_known = true;
   double working_pixel_mm = 0.2;  ///< of the resampled image
   double scanner_line_mm = 0.6;   ///< wider bright bands along the frame's edge are not cut off
   double padding_share = 0.01;  ///< rows and columns of the film have more pixels above the padding

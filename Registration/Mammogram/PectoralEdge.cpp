@@ -7,13 +7,16 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "Core/Quantiles.h"
+#include "Images/OpenCvView.h"
+
 namespace crease::pectoral {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
 
 double squared_gradient(const View& view, int i, int j) {
-  const double gx = view.gx.at<float>(j, i), gy = view.gy.at<float>(j, i);
+  const double gx = view.gx(i, j), gy = view.gy(i, j);
   return gx * gx + gy * gy;
 }
 
@@ -23,16 +26,14 @@ std::optional<std::pair<double, double>> edge_thresholds(const View& view,
   std::vector<double> sizes;
   for (int j = quadrant.y; j < quadrant.y + quadrant.height; ++j) {
     for (int i = quadrant.x; i < quadrant.x + quadrant.width; ++i) {
-      if (view.allowed.at<std::uint8_t>(j, i)) sizes.push_back(squared_gradient(view, i, j));
+      if (view.allowed(i, j)) sizes.push_back(squared_gradient(view, i, j));
     }
   }
   if (sizes.size() < 100) return std::nullopt;
-  const auto quantile = [&](double share) {
-    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
-    std::nth_element(sizes.begin(), sizes.begin() + k, sizes.end());
-    return std::sqrt(sizes[static_cast<std::size_t>(k)]);
+  const auto threshold = [&](double share) {
+    return std::sqrt(value_of_rank(std::span(sizes), nearest_rank(std::ssize(sizes), share)));
   };
-  return std::pair(quantile(0.7), quantile(0.9));
+  return std::pair(threshold(0.7), threshold(0.9));
 }
 
 /// Canny's edges of the quadrant that are bright towards the corner, at a slope that a muscle may have.
@@ -41,14 +42,14 @@ cv::Mat edges_of(const View& view, const cv::Rect& quadrant, const PectoralOptio
   const auto thresholds = edge_thresholds(view, quadrant);
   if (!thresholds) return {};
   cv::Mat gx, gy, edges;
-  view.gx(quadrant).convertTo(gx, CV_16S, kScale);
-  view.gy(quadrant).convertTo(gy, CV_16S, kScale);
+  opencv_view(view.gx)(quadrant).convertTo(gx, CV_16S, kScale);
+  opencv_view(view.gy)(quadrant).convertTo(gy, CV_16S, kScale);
   cv::Canny(gx, gy, edges, kScale * thresholds->first, kScale * thresholds->second, true);
   for (int j = 0; j < edges.rows; ++j) {
     for (int i = 0; i < edges.cols; ++i) {
       auto& edge = edges.at<std::uint8_t>(j, i);
-      const double slope = std::atan2(-view.gy.at<float>(j, i), -view.gx.at<float>(j, i)) / kRadian;
-      if (!view.allowed.at<std::uint8_t>(j, i) || slope < options.smallest_slope_deg - kTolerance ||
+      const double slope = std::atan2(-view.gy(i, j), -view.gx(i, j)) / kRadian;
+      if (!view.allowed(i, j) || slope < options.smallest_slope_deg - kTolerance ||
           slope > options.largest_slope_deg + kTolerance) {
         edge = 0;
       }
@@ -59,17 +60,19 @@ cv::Mat edges_of(const View& view, const cv::Rect& quadrant, const PectoralOptio
 
 }  // namespace
 
-bool View::holds(const cv::Mat& mask, const Point<2>& p) const {
+bool holds(const Mask<2>& mask, const Point<2>& p) {
+  const auto [width, height] = mask.size();
   const int i = static_cast<int>(std::lround(p.x())), j = static_cast<int>(std::lround(p.y()));
-  return i >= 0 && j >= 0 && i < mask.cols && j < mask.rows && mask.at<std::uint8_t>(j, i) != 0;
+  return i >= 0 && j >= 0 && i < width && j < height && mask(i, j) != 0;
 }
 
-double View::value(const cv::Mat& image, const Point<2>& p) const {
+double value_at(const Image<float, 2>& image, const Point<2>& p) {
+  const auto [width, height] = image.size();
   const int i = static_cast<int>(std::floor(p.x())), j = static_cast<int>(std::floor(p.y()));
-  if (i < 0 || j < 0 || i + 1 >= image.cols || j + 1 >= image.rows) return 0;
+  if (i < 0 || j < 0 || i + 1 >= width || j + 1 >= height) return 0;
   const double x = p.x() - i, y = p.y() - j;
-  const float* const upper = image.ptr<float>(j) + i;
-  const float* const lower = image.ptr<float>(j + 1) + i;
+  const float* const upper = &image(i, j);
+  const float* const lower = &image(i, j + 1);
   return (1 - y) * ((1 - x) * upper[0] + x * upper[1]) + y * ((1 - x) * lower[0] + x * lower[1]);
 }
 
@@ -77,7 +80,8 @@ Vector<2> StraightLine::normal() const { return {std::cos(angle_rad), std::sin(a
 Vector<2> StraightLine::direction() const { return {-std::sin(angle_rad), std::cos(angle_rad)}; }
 
 std::optional<StraightLine> best_straight_line(const View& view, const PectoralOptions& options) {
-  const cv::Rect quadrant(0, 0, view.grey.cols / 2, view.grey.rows / 2);
+  const auto [width, height] = view.grey.size();
+  const cv::Rect quadrant(0, 0, width / 2, height / 2);
   const cv::Mat edges = edges_of(view, quadrant, options);
   if (edges.empty()) return std::nullopt;
   const int fewest = static_cast<int>(0.5 * options.shortest_mm / view.pixel_mm);
@@ -104,8 +108,8 @@ Polyline cheapest_path(const View& view, const StraightLine& line, const Pectora
     for (int k = 0; k < width; ++k) {
       const Point<2> p = point(step, k);
       double gradient = 0;
-      if (view.holds(view.allowed, p)) {
-        gradient = std::max(0.0, -n.x() * view.value(view.gx, p) - n.y() * view.value(view.gy, p));
+      if (holds(view.allowed, p)) {
+        gradient = std::max(0.0, -n.x() * value_at(view.gx, p) - n.y() * value_at(view.gy, p));
       }
       const double cost = 1 / (1 + gradient);
       const auto at = [&](int s, int column) {

@@ -7,11 +7,13 @@
 #include "Core/Error.h"
 #include "Images/OpenCvView.h"
 #include "Registration/Mammogram/PectoralEdge.h"
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 namespace crease {
 namespace {
 
+using pectoral::holds;
+using pectoral::value_at;
 using pectoral::View;
 
 /// Pixels of the raster to those of the view, and back.
@@ -21,28 +23,33 @@ Point<2> turned(const Point<2>& p, ChestSide side, int width) {
 
 View make_view(const Image<float, 2>& image, const BreastSegmentation& breast,
                const PectoralOptions& options) {
+  const Raster<2> pixels{.size = image.size()};
   View view;
+  view.grey = view.gx = view.gy = Image<float, 2>(pixels);
+  view.breast = view.allowed = Mask<2>(pixels);
   view.pixel_mm = image.raster().spacing.minCoeff();
   double lower = breast.histogram.lower, upper = breast.histogram.upper;
   if (!(upper > lower)) cv::minMaxLoc(opencv_view(image), &lower, &upper);
   const double scale = upper > lower ? 255 / (upper - lower) : 1.0;
-  opencv_view(image).convertTo(view.grey, CV_32F, scale, -lower * scale);
-  view.breast = opencv_view(breast.mask).clone();
+  cv::Mat grey = opencv_view(view.grey), inside = opencv_view(view.breast);
+  opencv_view(image).convertTo(grey, CV_32F, scale, -lower * scale);
+  opencv_view(breast.mask).copyTo(inside);
   if (breast.side == ChestSide::kRight) {
-    cv::flip(view.grey, view.grey, 1);
-    cv::flip(view.breast, view.breast, 1);
+    cv::flip(grey, grey, 1);
+    cv::flip(inside, inside, 1);
   }
   const double sigma = options.edge_blur_mm / view.pixel_mm;
-  cv::GaussianBlur(view.grey, view.grey, {0, 0}, sigma, sigma, cv::BORDER_REPLICATE);
-  cv::Sobel(view.grey, view.gx, CV_32F, 1, 0, 3, 0.125);
-  cv::Sobel(view.grey, view.gy, CV_32F, 0, 1, 3, 0.125);
+  cv::GaussianBlur(grey, grey, {0, 0}, sigma, sigma, cv::BORDER_REPLICATE);
+  cv::Sobel(grey, opencv_view(view.gx), CV_32F, 1, 0, 3, 0.125);
+  cv::Sobel(grey, opencv_view(view.gy), CV_32F, 0, 1, 3, 0.125);
   cv::Mat distance;
-  cv::distanceTransform(view.breast, distance, cv::DIST_L2, cv::DIST_MASK_5);
-  view.allowed = (distance > options.skin_margin_mm / view.pixel_mm) & 1;
+  cv::distanceTransform(inside, distance, cv::DIST_L2, cv::DIST_MASK_5);
+  cv::Mat((distance > options.skin_margin_mm / view.pixel_mm) & 1)
+      .copyTo(opencv_view(view.allowed));
   return view;
 }
 
-/// Sum, sum of squares and number of grey values beside the line.
+/// The grey values on one side of a piece of the line.
 struct Band {
   double sum = 0, squares = 0;
   int count = 0;
@@ -52,11 +59,12 @@ struct Band {
     ++count;
   }
   double mean() const { return sum / count; }
+  /// Sum of squared deviations from the mean.
   double deviations() const { return squares - sum * sum / count; }
 };
 
-/// Brighter less darker side in standard deviations; 0 where one side is empty. Both are measured piece by piece,
-/// so that greys that change along the line do not count as noise.
+/// PectoralMuscle::contrast; 0 where no two places beside the line lie in the breast. Both sides are measured piece
+/// by piece, so that greys that change along the line do not count as noise.
 double contrast_along(const View& view, const Polyline& line, const PectoralOptions& options) {
   constexpr double kPiece = 10;  // mm
   const int near = static_cast<int>(std::ceil(options.band_near_mm / view.pixel_mm));
@@ -73,9 +81,9 @@ double contrast_along(const View& view, const Polyline& line, const PectoralOpti
       const Vector<2> away(along.y(), -along.x());  // from the corner, for lines that go down
       for (int k = near; k <= far; ++k) {
         const Point<2> inner = points[i] - k * away, outer = points[i] + k * away;
-        if (!view.holds(view.allowed, inner) || !view.holds(view.allowed, outer)) continue;
-        bright.add(view.value(view.grey, inner));
-        dark.add(view.value(view.grey, outer));
+        if (!holds(view.allowed, inner) || !holds(view.allowed, outer)) continue;
+        bright.add(value_at(view.grey, inner));
+        dark.add(value_at(view.grey, outer));
       }
     }
     if (bright.count < 2) continue;
@@ -89,10 +97,10 @@ double contrast_along(const View& view, const Polyline& line, const PectoralOpti
 }
 
 /// The longest stretch of points that lie in the mask.
-Polyline longest_inside(const View& view, const cv::Mat& mask, const Polyline& points) {
+Polyline longest_inside(const Mask<2>& mask, const Polyline& points) {
   Polyline best, run;
   for (const auto& p : points) {
-    if (view.holds(mask, p)) {
+    if (holds(mask, p)) {
       run.push_back(p);
       if (run.size() > best.size()) best = run;
     } else {
@@ -105,7 +113,7 @@ Polyline longest_inside(const View& view, const cv::Mat& mask, const Polyline& p
 /// Goes on straight from a point of the breast to the last one before the border.
 Point<2> at_border(const View& view, Point<2> p, const Vector<2>& direction) {
   constexpr double kStep = 0.25;
-  while (view.holds(view.breast, p + kStep * direction)) p += kStep * direction;
+  while (holds(view.breast, p + kStep * direction)) p += kStep * direction;
   return p;
 }
 
@@ -114,7 +122,7 @@ Polyline smoothed(const View& view, const Polyline& path, const PectoralOptions&
   const SplineCurve curve = fit_curve_within(path, options.smoothing_mm / view.pixel_mm).curve;
   const int count = std::max(4, static_cast<int>(curve.length() * view.pixel_mm / 2));
   Polyline points = equal_arc_points(curve, count);
-  const Polyline inside = longest_inside(view, view.breast, points);
+  const Polyline inside = longest_inside(view.breast, points);
   if (inside.size() < 2) return {};
   points = inside;
   // Directions over a centimetre: the spline's own at its ends follow the last few pixels.
@@ -137,7 +145,7 @@ std::optional<PectoralMuscle> find_pectoral_muscle(const Image<float, 2>& image,
   const auto straight = pectoral::best_straight_line(view, options);
   if (!straight) return std::nullopt;
   const Polyline path =
-      longest_inside(view, view.allowed, pectoral::cheapest_path(view, *straight, options));
+      longest_inside(view.allowed, pectoral::cheapest_path(view, *straight, options));
   if (static_cast<double>(path.size()) * view.pixel_mm < options.shortest_mm) return std::nullopt;
   const Polyline line = smoothed(view, path, options);
   if (line.empty()) return std::nullopt;
@@ -167,7 +175,7 @@ PectoralMuscle pectoral_muscle_of(Polyline line, const Image<float, 2>& image,
     std::reverse(line.begin(), line.end());
   }
   const bool somewhere = std::any_of(pixels.begin(), pixels.end(),
-                                     [&](const Point<2>& p) { return view.holds(view.breast, p); });
+                                     [&](const Point<2>& p) { return holds(view.breast, p); });
   if (!somewhere) throw InvalidInput("the pectoral line: none of its points lies in the breast.");
   return {std::move(line), contrast_along(view, pixels, options), true};
 }

@@ -24,15 +24,16 @@ struct PectoralOptions {
 
 /// The edge of the pectoral muscle in an oblique view.
 struct PectoralMuscle {
-  Polyline line;        ///< from its upper end (frame or skin) to its lower end (chest wall), mm
-  double contrast = 0;  ///< brighter side less darker side, in their pooled standard deviations
-  bool given = false;   ///< the user's polyline
+  Polyline line;  ///< from its upper end (frame or skin) to its lower end (chest wall), mm
+  /// Side towards the corner less the other side, in their pooled standard deviations; may be negative.
+  double contrast = 0;
+  bool given = false;  ///< the user's polyline, which may end elsewhere
 };
 
 /// The best straight line in the upper quadrant at the chest wall that is bright towards the corner (Hough
 /// transform of Canny's edges), refined to the path of least cost sum 1/(1 + gradient) near it, smoothed by a
-/// cubic B-spline and continued to the border of the breast. None: no line, or one of little contrast, as in
-/// views from above.
+/// cubic B-spline and continued to the border of the breast. None: no line, or one that is short or of little
+/// contrast, as in views from above.
 /// @param image  the frame's; @param breast  on the same raster.
 std::optional<PectoralMuscle> find_pectoral_muscle(const Image<float, 2>& image,
                                                    const BreastSegmentation& breast,

@@ -6,8 +6,9 @@
 #include <span>
 
 #include "Core/Error.h"
+#include "Core/Quantiles.h"
 #include "Images/OpenCvView.h"
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 namespace crease {
 namespace {
@@ -81,13 +82,6 @@ Polyline in_mm(Polyline points, const Raster<2>& raster) {
   return points;
 }
 
-double quantile(std::vector<double> values, double share) {
-  const auto k =
-      static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
-}
-
 std::vector<double> blurred(const std::vector<double>& values, double sigma) {
   if (!(sigma > 0)) return values;
   const int n = static_cast<int>(values.size()), reach = static_cast<int>(std::ceil(4 * sigma));
@@ -121,10 +115,10 @@ struct Bump {
 };
 
 /// All bumps of at least the height, each named by its highest point.
-std::vector<Bump> bumps(const std::vector<double>& values, double median, double height) {
+std::vector<Bump> bumps(const std::vector<double>& values, double usual, double height) {
   std::vector<Bump> found;
   const int n = static_cast<int>(values.size());
-  const auto above = [&](int i) { return values[static_cast<std::size_t>(i)] - median; };
+  const auto above = [&](int i) { return values[static_cast<std::size_t>(i)] - usual; };
   for (int i = 1; i + 1 < n; ++i) {
     if (above(i) < height || above(i) < above(i - 1) || above(i) <= above(i + 1)) continue;
     Bump bump{i, i, i};
@@ -177,19 +171,19 @@ std::optional<Nipple> find_nipple(const Polyline& points, const SkinContourOptio
   if (signed_area(points) < 0) {
     for (double& c : outward) c = -c;
   }
-  const double median = quantile(outward, 0.5);
+  const double usual = median(outward);
   std::vector<double> deviations;
-  for (const double c : outward) deviations.push_back(std::abs(c - median));
-  const double sigma = 1.4826 * quantile(deviations, 0.5);
+  for (const double c : outward) deviations.push_back(std::abs(c - usual));
+  const double sigma = 1.4826 * median(std::move(deviations));
   if (!(sigma > 0)) return std::nullopt;  // an even contour has no bump
   std::optional<Nipple> nipple;
   constexpr double kEnds = 0.05;  // of the length: there the film's edge bends the contour
-  for (const Bump& bump : bumps(outward, median, options.nipple_deviations * sigma)) {
+  for (const Bump& bump : bumps(outward, usual, options.nipple_deviations * sigma)) {
     const double t = bump.peak / double(count - 1);
     const double width = (bump.last - bump.first + 1) * spacing;
     if (t < kEnds || t > 1 - kEnds) continue;
     if (width < options.nipple_narrowest_mm || width > options.nipple_widest_mm) continue;
-    const double height = (outward[static_cast<std::size_t>(bump.peak)] - median) / sigma;
+    const double height = (outward[static_cast<std::size_t>(bump.peak)] - usual) / sigma;
     if (nipple && height <= nipple->deviations) continue;
     nipple = {curve.at(curve.parameter_at(t * curve.length())).point, t, height};
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "Transforms/Domains/ArcLength.h"
+
 namespace crease {
 namespace {
 
@@ -45,16 +47,11 @@ std::vector<double> skin_angles_by_length(int count) {
   constexpr int kSteps = 8192;
   const double first = -0.5 * std::numbers::pi, step = std::numbers::pi / kSteps;
   const Polyline points = skin_line(first, -first, kSteps + 1);
-  std::vector<double> length = {0};  // up to each point
-  for (int i = 1; i <= kSteps; ++i) {
-    length.push_back(length.back() + (points[i] - points[i - 1]).norm());
-  }
+  const std::vector<double> lengths = arc_lengths(points);
   std::vector<double> angles;
-  for (int k = 0, i = 0; k < count; ++k) {
-    const double wanted = length.back() * k / (count - 1);
-    while (i + 1 < kSteps && length[i + 1] < wanted) ++i;
-    const double share = (wanted - length[i]) / (length[i + 1] - length[i]);
-    angles.push_back(first + step * (i + share));
+  for (int k = 0; k < count; ++k) {
+    const auto place = place_at_length(lengths, lengths.back() * k / (count - 1));
+    angles.push_back(first + step * (static_cast<double>(place.first) + place.share));
   }
   return angles;
 }

@@ -9,6 +9,7 @@
 #include "Registration/Phantoms/MammogramStreams.h"
 #include "Registration/Phantoms/MammogramTissue.h"
 #include "Registration/Phantoms/MammogramTruth.h"
+#include "Registration/Phantoms/PhantomParts.h"
 
 namespace crease {
 namespace {
@@ -130,17 +131,6 @@ void take_image(const MammogramPhantomOptions& options, const Sources& sources, 
   image.pixels = digitised(film, options.bits);
 }
 
-DisplacementField<2> displacement_of(const MammogramMap& map, const Raster<2>& raster) {
-  DisplacementField<2> field(raster);
-  parallel_for(raster.size[1], [&](std::int64_t j) {
-    for (int i = 0; i < raster.size[0]; ++i) {
-      const Point<2> x = raster.point(Vector<2>(i, j));
-      field(i, static_cast<int>(j)) = map(x) - x;
-    }
-  });
-  return field;
-}
-
 void add_mass_parameters(const MammogramMass& mass, MammogramPhantom& phantom) {
   const Point<2> center = kMammogramWidthMm * mass.center, moved = phantom.truth(center);
   phantom.parameters.insert(phantom.parameters.end(),
@@ -180,7 +170,7 @@ MammogramPhantom make_mammogram_phantom(const MammogramPhantomOptions& options) 
   describe_moving(moving_tissue.ducts(), options.view, map, phantom.moving);
   phantom.truth = map;
   phantom.inverse = [map](const Point<2>& y) { return map.inverse(y); };
-  phantom.displacement = displacement_of(map, raster);
+  phantom.displacement = sample_displacement<2>(raster, map);
   phantom.landmarks = mammogram_landmarks(phantom.fixed, phantom.moving, map);
   phantom.parameters = {{"spacing_mm", raster.spacing.x()},
                         {"gain", response.gain},

@@ -45,7 +45,9 @@ class MammogramTissue {
   MammogramTissue with_mass(const std::optional<MammogramMass>& mass) const;
 
   const std::vector<Duct>& ducts() const { return parts_->ducts; }
-  /// Grey at x, in units of the frame's width. @param depth  skin_depth(x).
+  /// Grey over that of the film; 0 beyond the skin.
+  /// @param x      in units of the frame's width.
+  /// @param depth  skin_depth(x).
   double grey(const Point<2>& x, double depth) const;
 
  private:

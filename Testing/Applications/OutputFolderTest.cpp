@@ -68,6 +68,21 @@ TEST(OutputFolder, RemovesAnEarlierFileButNoInput) {
   EXPECT_TRUE(std::filesystem::exists(input));
 }
 
+TEST(OutputFolder, RemovesEarlierFilesByTheirNumbers) {
+  const testing::TemporaryFolder folder;
+  for (const char* name : {"warped-3.mha", "warped-12.nii.gz"}) folder.write(name, "old");
+  const std::vector<std::string> others = {"warped.mha",    "warped-2.mha", "warped-3",
+                                           "warped-03.mha", "warped-b.mha", "moving-3.mha"};
+  for (const std::string& name : others) folder.write(name, "kept");
+  OutputFolder(folder.path()).remove_numbered("warped", 3);
+  for (const char* name : {"warped-3.mha", "warped-12.nii.gz"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
+  for (const std::string& name : others) {
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  }
+}
+
 TEST(OutputFolder, SaysWhenItCannotBeMade) {
   const testing::TemporaryFolder folder;
   const std::string file = folder.write("file", "");

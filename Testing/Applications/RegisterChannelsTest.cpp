@@ -59,6 +59,14 @@ TEST_F(RegisterChannels, AreReportedAndWarpedEach) {
   EXPECT_EQ(testing::read_result(folder / "again")["metric"], metric);
 }
 
+TEST_F(RegisterChannels, ThoseOfAnEarlierRunAreRemoved) {
+  registered(second());
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/warped-2.mha"));
+  registered({});
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/warped.mha"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/warped-2.mha"));
+}
+
 TEST_F(RegisterChannels, OneIsListedToo) {
   for (const std::string transform : {"triangular-bspline", "rigid"}) {
     const auto metric = registered({"--transform", transform})["metric"];

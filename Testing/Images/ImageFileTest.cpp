@@ -340,6 +340,28 @@ TEST(ImageFile, DisplacementFieldsOfOneSliceAre2D) {
   EXPECT_EQ(read(2, 1), Vector<2>(1.5, -2));
 }
 
+TEST(ImageFile, KnowsWhetherTheFileTellsItsSpacing) {
+  const TemporaryFolder folder;
+  const auto image = numbered_image<2>(plain_raster<2>(test_size<2>()), 3, 1);  // of 1 mm
+  for (const char* name : {"i.mha", "i.nrrd", "i.nii"}) {
+    write_image(folder / name, image, PixelType::kUint8);
+    EXPECT_TRUE(read_image<2>(folder / name).spacing_known) << name;
+  }
+  for (const char* name : {"i.png", "i.jpg", "i.tif", "i.pgm"}) {
+    write_image(folder / name, image, PixelType::kUint8);
+    EXPECT_FALSE(read_image<2>(folder / name).spacing_known) << name;
+  }
+  write_text(folder / "plain.mha",
+             "NDims = 2\nDimSize = 2 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\nab");
+  write_text(folder / "plain.nrrd",
+             "NRRD0004\ntype: uchar\ndimension: 2\nsizes: 2 1\nencoding: raw\n\nab");
+  for (const char* name : {"plain.mha", "plain.nrrd"}) {
+    const auto read = read_image<2>(folder / name);
+    EXPECT_FALSE(read.spacing_known) << name;
+    EXPECT_EQ(read.image.raster().spacing, Vector<2>::Ones()) << name;
+  }
+}
+
 TEST(ImageFile, ReadsTextAndBinaryPgm) {
   const TemporaryFolder folder;
   write_text(folder / "a.pgm", "P2\n# a comment\n3 2 # another\n1000\n0 1 2\n997 998\n999\n");

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "Core/Error.h"
+#include "Transforms/Domains/ArcLength.h"
 #include "Transforms/Domains/CurveSampling.h"
 
 namespace crease {
@@ -15,12 +16,10 @@ std::optional<Point<2>> nearest_on_border(const RegionOfInterest& region, const 
                                           double distance) {
   std::optional<Point<2>> nearest;
   for (const auto& ring : region.rings()) {
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const auto q = closest_point_on_segment(p, ring[k], ring[(k + 1) % ring.size()]);
-      if ((p - q).norm() > distance) continue;
-      distance = (p - q).norm();
-      nearest = q;
-    }
+    const NearestPlace place = nearest_place(ring, true, p);
+    if (place.distance > distance) continue;
+    distance = place.distance;
+    nearest = place.point;
   }
   return nearest;
 }

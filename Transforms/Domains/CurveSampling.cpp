@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "Transforms/Domains/ArcLength.h"
+
 namespace crease {
 namespace {
 
@@ -19,13 +21,7 @@ struct DenseCurve {
   std::vector<char> original;
 
   int size() const { return static_cast<int>(points.size()); }
-  Point<2> at(double length) const {
-    auto it = std::upper_bound(s.begin(), s.end(), length);
-    const auto i = std::clamp<std::ptrdiff_t>(it - s.begin(), 1, size() - 1);
-    const double step = s[i] - s[i - 1];
-    const double t = step > 0 ? std::clamp((length - s[i - 1]) / step, 0.0, 1.0) : 0;
-    return points[i - 1] + t * (points[i] - points[i - 1]);
-  }
+  Point<2> at(double length) const { return point_at_length(points, s, length); }
 };
 
 /// Divides long edges so that densities can be integrated point by point. A closed curve ends in its
@@ -34,11 +30,8 @@ DenseCurve make_dense(Polyline points, bool closed,
                       const std::function<double(const Point<2>&)>& edge_length) {
   if (closed) points.push_back(points.front());
   DenseCurve dense;
-  double length = 0;
   const auto add = [&](const Point<2>& p, double wanted, bool original) {
-    if (!dense.points.empty()) length += (p - dense.points.back()).norm();
     dense.points.push_back(p);
-    dense.s.push_back(length);
     dense.wanted.push_back(wanted);
     dense.original.push_back(original);
   };
@@ -54,6 +47,7 @@ DenseCurve make_dense(Polyline points, bool closed,
     }
     add(points[i], wanted, true);
   }
+  dense.s = arc_lengths(dense.points);
   const int n = dense.size();
   dense.turn.assign(n, 0);
   for (int i = 1; i + 1 < n; ++i) {

@@ -59,14 +59,9 @@ std::vector<double> border_crossings(const RegionOfInterest& region, const Point
 }
 
 bool is_inside(const RegionOfInterest& region, const Point<2>& p, double tolerance) {
-  if (!region.contains(p)) return false;
-  for (const auto& ring : region.rings()) {
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const auto q = closest_point_on_segment(p, ring[k], ring[(k + 1) % ring.size()]);
-      if ((p - q).norm() <= tolerance) return false;
-    }
-  }
-  return true;
+  return region.contains(p) && std::ranges::all_of(region.rings(), [&](const Polyline& ring) {
+           return distance_to_polyline(ring, true, p) > tolerance;
+         });
 }
 
 void thin_out(FeatureLine& line, double distance, std::vector<std::string>& notes) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "Transforms/BoundGrid.h"
 
@@ -49,6 +50,21 @@ void choose_block_samples(int num_rows, int num_columns, const Covered& covered,
       }
     }
   }
+}
+
+/// The triangles, in their order, that each row of blocks has samples of.
+/// @param triangles  with their first_row and last_row of samples; no rows where the first is the larger one.
+template <typename Triangles>
+std::vector<std::vector<int>> triangles_of_block_rows(const Triangles& triangles, int num_rows) {
+  constexpr int kBlock = CurvatureBlocks<2>::kBlock;
+  std::vector<std::vector<int>> found((num_rows + kBlock - 1) / kBlock);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (triangles[t].first_row > triangles[t].last_row) continue;
+    for (int b = triangles[t].first_row / kBlock; b <= triangles[t].last_row / kBlock; ++b) {
+      found[b].push_back(static_cast<int>(t));
+    }
+  }
+  return found;
 }
 
 /// How far apart samples may lie where control points lie `spacing` samples apart.

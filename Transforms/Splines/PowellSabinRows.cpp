@@ -177,16 +177,9 @@ PowellSabinRows make_powell_sabin_rows(const PowellSabinBasis& basis, const Rast
   parallel_for(std::ssize(triangles), [&](std::int64_t t) {
     triangles[t] = Triangle(basis, static_cast<int>(t), raster);
   });
-  const int count = (raster.size[1] + kBlock - 1) / kBlock;
-  std::vector<std::vector<int>> candidates(count);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (triangles[t].first_row > triangles[t].last_row) continue;
-    for (int b = triangles[t].first_row / kBlock; b <= triangles[t].last_row / kBlock; ++b) {
-      candidates[b].push_back(static_cast<int>(t));
-    }
-  }
-  std::vector<Band> bands(count);
-  parallel_for(count, [&](std::int64_t b) {
+  const auto candidates = triangles_of_block_rows(triangles, raster.size[1]);
+  std::vector<Band> bands(candidates.size());
+  parallel_for(std::ssize(candidates), [&](std::int64_t b) {
     bands[b] = BandBuilder(basis, raster, triangles, static_cast<int>(b)).build(candidates[b]);
   });
   PowellSabinRows result;

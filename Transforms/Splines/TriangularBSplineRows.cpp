@@ -322,17 +322,10 @@ std::vector<RowBand> make_row_bands(const TriangularBSplineBasis<2>& basis,
                                     const TriangularBSplineEvaluator& evaluator,
                                     const Raster<2>& raster) {
   const auto triangles = triangles_on_raster(basis, raster);
-  const int count = (raster.size[1] + kBlock - 1) / kBlock;
-  std::vector<std::vector<int>> candidates(count);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (triangles[t].first_row > triangles[t].last_row) continue;
-    for (int b = triangles[t].first_row / kBlock; b <= triangles[t].last_row / kBlock; ++b) {
-      candidates[b].push_back(static_cast<int>(t));
-    }
-  }
+  const auto candidates = triangles_of_block_rows(triangles, raster.size[1]);
   const double tie = kKnotTie * mesh_scale(basis.net().mesh);
-  std::vector<RowBand> bands(count);
-  parallel_for(count, [&](std::int64_t b) {
+  std::vector<RowBand> bands(candidates.size());
+  parallel_for(std::ssize(candidates), [&](std::int64_t b) {
     thread_local TriangularBSplineEvaluator::Scratch scratch;
     BandBuilder builder(basis, evaluator, raster, triangles, tie);
     bands[b] = builder.build(static_cast<int>(b), candidates[b], scratch);

@@ -103,7 +103,7 @@ void expect_no_breast(const Image<float, 2>& image, const char* reason,
   EXPECT_THAT([&] { segment_breast(image, options); },
               ThrowsMessage<NoBreastFound>(AllOf(HasSubstr("no breast found in film.png"),
                                                  HasSubstr(reason), HasSubstr("--threshold"),
-                                                 HasSubstr("--mask"))));
+                                                 HasSubstr("--roi"))));
 }
 
 TEST(BreastSegmentation, SaysWhyThereIsNoBreast) {

@@ -57,7 +57,7 @@ TEST(MammogramAnatomy, PointsLieInTheImagesGeometry) {
   EXPECT_LT(largest_distance(there.region, moved(here.region)), 1e-6);
 }
 
-TEST(MammogramAnatomy, DoesNotDependOnBitDepthInversionOrPadding) {
+TEST(MammogramAnatomy, DoesNotDependOnBitDepthOrInversion) {
   const DrawnBreast drawn = draw_breast();
   const Mask<2> reference = analyse_mammogram(drawn.image).breast.mask;
   for (const int largest : {255, 4095, 65535}) {
@@ -148,9 +148,9 @@ TEST(MammogramAnatomy, ViewsThatDoNotFitAreSaid) {
   EXPECT_THAT(check_views(fixed, longer, true), Contains(HasSubstr("40 %")));
 }
 
-/// Images that show no breast: every one is answered with a reason, or, where chance makes it look like one, with
-/// an anatomy; never with a crash or another kind of error.
-TEST(MammogramAnatomy, DamagedImagesAreAnsweredWithAReason) {
+/// Images that show no whole breast: every one is refused with a reason, or, where it looks like a breast all the
+/// same, has an anatomy; never is there a crash or another kind of error.
+TEST(MammogramAnatomy, ImagesWithoutABreastAreRefusedOrLookLikeOne) {
   const DrawnBreast drawn = draw_breast();
   const Raster<2> raster = drawn.image.raster();
   const auto make = [&](const std::function<double(int, int)>& grey) {
@@ -192,8 +192,8 @@ TEST(MammogramAnatomy, DamagedImagesAreAnsweredWithAReason) {
   }
 }
 
-// Whole numbers or not, tiny or huge: only the order of the grey values counts.
-TEST(MammogramAnatomy, DoesNotDependOnTheUnitOfGrey) {
+// Whole numbers or not, tiny or huge, negative or not.
+TEST(MammogramAnatomy, DoesNotDependOnTheUnitOrTheZeroOfGrey) {
   const DrawnBreast drawn = draw_breast();
   const Mask<2> reference = analyse_mammogram(drawn.image).breast.mask;
   for (const float unit : {1e-20f, 3.7f, 1e20f}) {

@@ -7,7 +7,9 @@
 #include <numeric>
 
 #include "Core/Error.h"
+#include "Images/ImageFile.h"
 #include "Testing/Registration/Mammogram/DrawnBreast.h"
+#include "Testing/TemporaryFolder.h"
 
 namespace crease {
 namespace {
@@ -80,14 +82,36 @@ TEST(MammogramFrame, AssumesAPixelSizeOnlyWhereNoneIsKnown) {
   auto film = draw_breast().image;
   Raster<2> unknown = film.raster();
   unknown.spacing.setOnes();
-  const MammogramFrame assumed = find_frame(Image<float, 2>(unknown, film.values()));
+  const MammogramFrame assumed =
+      find_frame(Image<float, 2>(unknown, film.values()), {.spacing_known = false});
   EXPECT_EQ(assumed.raster.spacing, Vector<2>::Constant(0.2));
   EXPECT_THAT(assumed.notes, Contains(HasSubstr("0.2 mm")));
   EXPECT_THAT(find_frame(film).notes, Not(Contains(HasSubstr("pixel size"))));
-  const MammogramFrame given =
-      find_frame(Image<float, 2>(unknown, film.values()), {.pixel_size_mm = 0.1});
+  const MammogramFrame believed = find_frame(Image<float, 2>(unknown, film.values()));
+  EXPECT_EQ(believed.raster.spacing, Vector<2>::Ones());  // 1 mm may be the truth
+  EXPECT_THAT(believed.notes, Not(Contains(HasSubstr("pixel size"))));
+  const MammogramFrame given = find_frame(Image<float, 2>(unknown, film.values()),
+                                          {.pixel_size_mm = 0.1, .spacing_known = false});
   EXPECT_EQ(given.raster.spacing, Vector<2>::Constant(0.1));
   EXPECT_EQ(given.image.size(), (std::array{280, 350}));
+}
+
+TEST(MammogramFrame, BelievesAFileThatSaysOneMillimetre) {
+  const testing::TemporaryFolder folder;
+  Raster<2> raster;
+  raster.size = {200, 256};
+  const Image<float, 2> film(
+      raster, testing::quantized(draw_breast({.width = 200, .height = 256}).image, 255).values());
+  const auto frame_of_file = [&](const char* name) {
+    write_image(folder / name, film, PixelType::kUint8);
+    const ReadImage<2> read = read_image<2>(folder / name);
+    return find_frame(read.image, {.spacing_known = read.spacing_known});
+  };
+  const MammogramFrame told = frame_of_file("film.mha"), untold = frame_of_file("film.png");
+  EXPECT_EQ(told.raster.spacing, Vector<2>::Ones());
+  EXPECT_THAT(told.notes, Not(Contains(HasSubstr("pixel size"))));
+  EXPECT_EQ(untold.raster.spacing, Vector<2>::Constant(0.2));
+  EXPECT_THAT(untold.notes, Contains(HasSubstr("0.2 mm is assumed")));
 }
 
 TEST(MammogramFrame, ResamplingKeepsTheMeanAndThePlace) {

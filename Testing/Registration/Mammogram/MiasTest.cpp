@@ -21,7 +21,10 @@ class Mias : public ::testing::TestWithParam<const char*> {
     if (!std::filesystem::exists(film) || !std::filesystem::exists(mask)) {
       GTEST_SKIP() << film << " is not there";
     }
-    image_ = read_image<2>(film).image;
+    const Image<float, 2> read = read_image<2>(film).image;
+    Raster<2> raster = read.raster();
+    raster.spacing.setConstant(0.2);  // of the database; the files do not say it
+    image_ = {raster, read.values()};
     mask_ = read_mask<2>(mask);
   }
   Image<float, 2> image_;

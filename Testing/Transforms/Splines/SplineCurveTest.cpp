@@ -1,12 +1,12 @@
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "Core/Error.h"
-#include "Registration/Phantoms/Random.h"
 
 namespace crease {
 namespace {
@@ -76,8 +76,9 @@ TEST(SplineCurve, EqualArcPointsAreEquallyFar) {
 
 TEST(SplineCurve, StopsAtTheFewestControlPointsThatDo) {
   auto points = arc(60, 45, -1.4, 1.4, 800);
-  Random random(2, 1);
-  for (auto& p : points) p += Vector<2>(0.2 * random.normal(), 0.2 * random.normal());
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 0.2);
+  for (auto& p : points) p += Vector<2>(noise(random), noise(random));
   const FittedCurve fitted = fit_curve_within(points, 0.25);
   EXPECT_LE(fitted.rms_mm, 0.25);
   EXPECT_LT(fitted.curve.num_control_points(), 12);

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "Applications/RegisterOutput.h"
 #include "Applications/Report/HtmlReport.h"
 #include "Applications/Report/ReportPlanes.h"
+#include "Applications/TransformImages.h"
+#include "Registration/Landmarks.h"
+#include "Transforms/Domains/FeatureLine.h"
 
 namespace crease {
 
@@ -38,22 +40,16 @@ struct StackSources {
   std::vector<Map> maps = {};
 };
 
-/// Those of `crease register`.
-template <int Dim>
-StackSources<Dim> stack_sources(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                                const RegisterOutcome<Dim>& outcome,
-                                const RegisterImages<Dim>& images);
-
 /// The pixels of a registration's report: fixed, moving and warped image, their differences, determinants
 /// and strain on the fixed raster, and the grid that T deforms over the moving image.
 ///
 /// They are made by jobs, which depend on nothing but what is passed in and may run in parallel with others.
 template <int Dim>
-class RegisterStacks {
+class ReportStacks {
  public:
-  explicit RegisterStacks(StackSources<Dim> sources);
-  RegisterStacks(const RegisterStacks&) = delete;
-  RegisterStacks& operator=(const RegisterStacks&) = delete;
+  explicit ReportStacks(StackSources<Dim> sources);
+  ReportStacks(const ReportStacks&) = delete;
+  ReportStacks& operator=(const ReportStacks&) = delete;
 
   /// To be run once each, in any order.
   const std::vector<std::function<void()>>& jobs() const { return jobs_; }
@@ -102,13 +98,7 @@ class RegisterStacks {
   std::vector<std::function<void()>> jobs_;
 };
 
-extern template StackSources<2> stack_sources<2>(const RegisterOptions&, const RegisterInput<2>&,
-                                                 const RegisterOutcome<2>&,
-                                                 const RegisterImages<2>&);
-extern template StackSources<3> stack_sources<3>(const RegisterOptions&, const RegisterInput<3>&,
-                                                 const RegisterOutcome<3>&,
-                                                 const RegisterImages<3>&);
-extern template class RegisterStacks<2>;
-extern template class RegisterStacks<3>;
+extern template class ReportStacks<2>;
+extern template class ReportStacks<3>;
 
 }  // namespace crease

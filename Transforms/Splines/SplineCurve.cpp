@@ -1,10 +1,11 @@
-#include "Registration/Mammogram/SplineCurve.h"
+#include "Transforms/Splines/SplineCurve.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "Core/Error.h"
+#include "Transforms/Domains/ArcLength.h"
 #include "Transforms/GaussRule.h"
 
 namespace crease {
@@ -14,10 +15,7 @@ constexpr int kDegree = 3;
 
 /// Chord lengths from the first point, scaled to end at 1.
 std::vector<double> chord_parameters(std::span<const Point<2>> points) {
-  std::vector<double> u(points.size(), 0.0);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    u[i] = u[i - 1] + (points[i] - points[i - 1]).norm();
-  }
+  std::vector<double> u = arc_lengths(points);
   if (!(u.back() > 0)) throw InvalidInput("fit_curve: the points are all the same.");
   for (double& value : u) value /= u.back();
   u.back() = 1;
@@ -67,14 +65,11 @@ double SplineCurve::length_between(double begin, double end) const {
 }
 
 double SplineCurve::parameter_at(double arc_length) const {
-  const auto above = std::upper_bound(lengths_.begin(), lengths_.end(), arc_length);
-  const int span =
-      std::clamp(static_cast<int>(above - lengths_.begin()) - 1, 0, knots_.num_spans() - 1);
+  const PlaceBetween place = place_at_length(lengths_, arc_length);
+  const int span = static_cast<int>(place.first);
   const double begin = knots_.span_begin(span), width = knots_.span_length(span);
-  const double wanted = arc_length - lengths_[static_cast<std::size_t>(span)];
-  const double whole =
-      lengths_[static_cast<std::size_t>(span) + 1] - lengths_[static_cast<std::size_t>(span)];
-  double u = begin + width * (whole > 0 ? wanted / whole : 0.0);
+  const double wanted = arc_length - lengths_[place.first];
+  double u = begin + width * place.share;
   for (int step = 0; step < 8; ++step) {
     const double speed = at(u).first.norm();
     if (!(speed > 0)) break;

@@ -1,4 +1,4 @@
-#include "Applications/Report/RegisterStacks.h"
+#include "Applications/Report/ReportStacks.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "Applications/Report/ReportPlaces.h"
 #include "Images/IntensityRange.h"
 #include "Images/RasterCheck.h"
+#include "Registration/Evaluation.h"
 #include "Registration/PicturesLines.h"
 
 namespace crease {
@@ -97,23 +98,7 @@ std::string landmark_label(int number, int count) {
 }  // namespace
 
 template <int Dim>
-StackSources<Dim> stack_sources(const RegisterOptions& options, const RegisterInput<Dim>& input,
-                                const RegisterOutcome<Dim>& outcome,
-                                const RegisterImages<Dim>& images) {
-  StackSources<Dim> sources{
-      input.fixed.image,  input.moving.image, images.warped, images.before, images,
-      *outcome.transform, input.landmarks};
-  if (outcome.domain) sources.lines = outcome.domain->feature_lines;
-  sources.equal_intensities = options.expects_equal_intensities();
-  for (std::size_t c = 0; c < images.further_warped.size(); ++c) {
-    sources.channels.push_back(
-        {input.further_fixed[c].image, input.further_moving[c].image, images.further_warped[c]});
-  }
-  return sources;
-}
-
-template <int Dim>
-RegisterStacks<Dim>::RegisterStacks(StackSources<Dim> sources)
+ReportStacks<Dim>::ReportStacks(StackSources<Dim> sources)
     : sources_(std::move(sources)),
       fixed_(sources_.fixed.raster(), kLayers + 2 * static_cast<int>(sources_.channels.size()) +
                                           static_cast<int>(sources_.maps.size())) {
@@ -128,8 +113,8 @@ RegisterStacks<Dim>::RegisterStacks(StackSources<Dim> sources)
 }
 
 template <int Dim>
-int RegisterStacks<Dim>::add_layer(Stack& stack, const std::string& name, const ReportScale& scale,
-                                   const SamplesOfSlice& samples) {
+int ReportStacks<Dim>::add_layer(Stack& stack, const std::string& name, const ReportScale& scale,
+                                 const SamplesOfSlice& samples) {
   const int layer = static_cast<int>(stack.shown.layers.size());
   stack.shown.layers.push_back({name, scale, {}});
   jobs_.push_back([&stack, layer, samples] {
@@ -140,9 +125,8 @@ int RegisterStacks<Dim>::add_layer(Stack& stack, const std::string& name, const 
 }
 
 template <int Dim>
-int RegisterStacks<Dim>::add_overlay(Stack& stack, const std::string& name,
-                                     ReportOverlay::Look look,
-                                     const std::function<void(ReportOverlay&)>& draw) {
+int ReportStacks<Dim>::add_overlay(Stack& stack, const std::string& name, ReportOverlay::Look look,
+                                   const std::function<void(ReportOverlay&)>& draw) {
   const int overlay = static_cast<int>(stack.shown.overlays.size());
   stack.shown.overlays.push_back({name, look, empty_drawings(stack.planes)});
   jobs_.push_back(
@@ -151,7 +135,7 @@ int RegisterStacks<Dim>::add_overlay(Stack& stack, const std::string& name,
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::add_images() {
+void ReportStacks<Dim>::add_images() {
   const ReportScale fixed = window(sources_.fixed);
   const ReportScale moving = sources_.equal_intensities ? fixed : window(sources_.moving);
   greys_ = {add_layer(fixed_, "fixed", fixed, samples_of(sources_.fixed)),
@@ -168,7 +152,7 @@ void RegisterStacks<Dim>::add_images() {
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::add_differences() {
+void ReportStacks<Dim>::add_differences() {
   const ReportScale scale = report_scale(
       difference_scale(difference(sources_.before, sources_.fixed)), "difference of intensities");
   differences_ = {add_layer(fixed_, "before: moving \u2212 fixed", scale,
@@ -178,7 +162,7 @@ void RegisterStacks<Dim>::add_differences() {
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::add_maps() {
+void ReportStacks<Dim>::add_maps() {
   ReportScale determinants = report_scale(
       determinant_scale(
           summarize_determinants(within(sources_.images.determinants, sources_.images.domain))),
@@ -204,7 +188,7 @@ void RegisterStacks<Dim>::add_maps() {
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::find_places() {
+void ReportStacks<Dim>::find_places() {
   ReportOverlay& overlay = fixed_.shown.overlays[static_cast<std::size_t>(places_overlay_)];
   const auto add = [&](const Image<float, Dim>& image, bool largest, const char* what) {
     constexpr int kCount = 2;
@@ -226,8 +210,8 @@ void RegisterStacks<Dim>::find_places() {
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::draw_features(const Stack& stack, const PointMap<Dim>& map,
-                                        ReportOverlay& overlay) const {
+void ReportStacks<Dim>::draw_features(const Stack& stack, const PointMap<Dim>& map,
+                                      ReportOverlay& overlay) const {
   if constexpr (Dim == 2) {
     const Slice<2>& slice = stack.planes.slices(0).front();
     for (const FeatureLine& line : sources_.lines) {
@@ -239,7 +223,7 @@ void RegisterStacks<Dim>::draw_features(const Stack& stack, const PointMap<Dim>&
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::add_outlines() {
+void ReportStacks<Dim>::add_outlines() {
   if (!sources_.lines.empty()) {
     outlines_.push_back(
         add_overlay(fixed_, "feature lines", ReportOverlay::Look::kFeature, [this](auto& overlay) {
@@ -260,13 +244,13 @@ void RegisterStacks<Dim>::add_outlines() {
 
 /// In 3D, with so many more lines, read off the displacement; in 2D that need not be there any more.
 template <int Dim>
-PointMap<Dim> RegisterStacks<Dim>::grid_map() const {
+PointMap<Dim> ReportStacks<Dim>::grid_map() const {
   if constexpr (Dim == 3) return displacement_map(sources_.images.displacement);
   return [this](const Point<Dim>& x) { return sources_.transform.map(x); };
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) const {
+void ReportStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) const {
   constexpr int kLines = Dim == 2 ? 32 : 20;
   const Raster<Dim>& fixed = fixed_.raster;
   const PointMap<Dim> map = grid_map();
@@ -290,7 +274,7 @@ void RegisterStacks<Dim>::draw_grid(const Stack& stack, ReportOverlay& overlay) 
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::add_deformation() {
+void ReportStacks<Dim>::add_deformation() {
   Stack& stack = moving_ ? *moving_ : fixed_;
   deformed_layer_ =
       moving_ ? add_layer(stack, "moving", window(sources_.moving), samples_of(sources_.moving))
@@ -311,7 +295,7 @@ void RegisterStacks<Dim>::add_deformation() {
 
 /// Where T carries a fixed landmark is drawn in the slice of its partner.
 template <int Dim>
-void RegisterStacks<Dim>::draw_landmarks(const Stack& stack, ReportOverlay& overlay) const {
+void ReportStacks<Dim>::draw_landmarks(const Stack& stack, ReportOverlay& overlay) const {
   const Landmarks<Dim>& landmarks = sources_.landmarks;
   for (int p = 0; p < stack.planes.num_planes(); ++p) {
     for (int j = 0; j < landmarks.size(); ++j) {
@@ -327,7 +311,7 @@ void RegisterStacks<Dim>::draw_landmarks(const Stack& stack, ReportOverlay& over
 }
 
 template <int Dim>
-void RegisterStacks<Dim>::add_to(HtmlReport& report) {
+void ReportStacks<Dim>::add_to(HtmlReport& report) {
   const int fixed = report.add_stack(std::move(fixed_.shown));
   const int moving = moving_ ? report.add_stack(std::move(moving_->shown)) : fixed;
   using Kind = ReportViewer::Kind;
@@ -381,11 +365,7 @@ void RegisterStacks<Dim>::add_to(HtmlReport& report) {
                "map folds. |E|: size of the Green strain \u00bd(\u2207T\u1d40\u2207T \u2212 1)."});
 }
 
-template StackSources<2> stack_sources<2>(const RegisterOptions&, const RegisterInput<2>&,
-                                          const RegisterOutcome<2>&, const RegisterImages<2>&);
-template StackSources<3> stack_sources<3>(const RegisterOptions&, const RegisterInput<3>&,
-                                          const RegisterOutcome<3>&, const RegisterImages<3>&);
-template class RegisterStacks<2>;
-template class RegisterStacks<3>;
+template class ReportStacks<2>;
+template class ReportStacks<3>;
 
 }  // namespace crease

@@ -1,4 +1,4 @@
-#include "Registration/Mammogram/OctagonFilter.h"
+#include "Images/OctagonFilter.h"
 
 #include <gtest/gtest.h>
 

@@ -108,17 +108,26 @@ void set_state(const ElasticEquilibrium& body, LoadStepResult& result) {
       std::move(result));
 }
 
+LandmarkOptions pair_options() {
+  LandmarkOptions options;
+  options.words.noun = "pair";
+  options.words.remedies =
+      "correct or delete some of them, or use smaller triangles there (--mesh-size, or more "
+      "--triangles)";
+  return options;
+}
+
 /// Rows of the pairs' constraints, by their names.
 LinearConstraints pair_constraints(const ElasticDeformation& deformation, const Landmarks<2>& pairs,
                                    NullSpaceKind kind, std::vector<int>& independent,
                                    std::vector<std::string>& warnings) {
-  const auto found =
-      make_landmark_constraints<2>(pairs, *deformation.basis, deformation.affine, {}, kind);
+  const auto found = make_landmark_constraints<2>(pairs, *deformation.basis, deformation.affine,
+                                                  pair_options(), kind);
   warnings.insert(warnings.end(), found.notes.begin(), found.notes.end());
   independent = found.null_space->independent_rows();
   LinearConstraints constraints = found.null_space->constraints();
   for (std::size_t j = 0; j < constraints.names.size(); ++j) {
-    constraints.names[j] = message("pair ", j + 1);
+    constraints.names[j] = pair_options().words.one(static_cast<int>(j));
   }
   return constraints;
 }

@@ -148,6 +148,7 @@ Json figures_json(const ElasticStory& story) {
   json["unknowns"] = 2 * domain.basis->num_control_points();
   json["material"] = material_json(story);
   json["equilibrium"] = registration.failure.empty();
+  json["unstable_equilibrium"] = registration.load.unstable;
   json["load_fraction"] = registration.load.fraction;
   json["load_steps"] = load_steps_json(registration.load);
   json["refinement"] = registration.refinement ? refinement_json(*registration.refinement) : Json();
@@ -177,10 +178,12 @@ std::string summary_text(const ElasticStory& story, double seconds) {
   for (const LoadStepRecord& step : registration.load.steps) {
     line(fmt::format("load step {}", step.step),
          fmt::format("{:5.1f} %, {} Newton iterations, min det {:.3f}, largest reaction {:.4g} at "
-                     "pair {}",
+                     "pair {}{}",
                      100 * step.fraction, step.newton_iterations, step.least_determinant,
-                     step.largest_reaction, step.largest_reaction_row + 1));
+                     step.largest_reaction, step.largest_reaction_row + 1,
+                     step.unstable ? ", unstable equilibrium" : ""));
   }
+  if (registration.load.unstable) line("equilibrium", "unstable: a small push would end it");
   line("improvement",
        improvement_text(registration, registration.improvement_by_pairs) + " by the pairs");
   if (registration.refinement) {

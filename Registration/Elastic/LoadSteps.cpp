@@ -54,11 +54,18 @@ void warn_of_reactions(const LinearConstraints& constraints, double suspicious,
 }
 
 void warn_of_instability(LoadStepResult& result) {
+  if (result.unstable) {
+    result.warnings.push_back(message(
+        "unstable equilibrium at load fraction ", result.fraction,
+        ": the tangent is not positive definite, and a small push would let the body buckle. "
+        "More pairs there hold it."));
+    return;
+  }
   for (const LoadStepRecord& record : result.steps) {
     if (!record.unstable) continue;
-    result.warnings.push_back(
-        message("unstable equilibrium at load fraction ", record.fraction,
-                ": the tangent is not positive definite, the body may buckle another way"));
+    result.warnings.push_back(message("unstable equilibrium on the way, at load fraction ",
+                                      record.fraction,
+                                      ": beyond it the body may have buckled one way or another."));
     return;
   }
 }
@@ -97,6 +104,15 @@ void set_state(const ElasticEquilibrium& body, LoadStepResult& result) {
   result.reactions = body.reactions();
   result.least_determinant = body.least_determinant();
   result.factorizations = body.num_factorizations();
+}
+
+/// What is told of the state that a run ends with.
+void judge_state(ElasticEquilibrium& body, const LinearConstraints& constraints,
+                 const LoadStepOptions& options, LoadStepResult& result) {
+  result.unstable = !body.stable();
+  result.factorizations = body.num_factorizations();
+  warn_of_reactions(constraints, options.suspicious_reaction, result);
+  warn_of_instability(result);
 }
 
 [[noreturn]] void give_up(const std::string& reason, LoadStepResult result) {
@@ -144,18 +160,17 @@ void warn_of_locking(const ElasticDeformation& deformation, std::vector<std::str
                              kLockingPoisson, "; use degree 2"));
 }
 
-}  // namespace
-
-LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
-                              const LinearConstraints& constraints, const LoadStepOptions& options,
-                              const LoadStepCallback& progress) {
-  check_options(options);
+/// @param warnings  of what was done before: the first ones of the result, and of its failure.
+LoadStepResult load(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
+                    const LinearConstraints& constraints, const LoadStepOptions& options,
+                    const LoadStepCallback& progress, std::vector<std::string> warnings) {
   const Eigen::Index m =
       constraints.d.cols() == 2 ? basis.num_control_points() : 2 * basis.num_control_points();
   const auto null_space = make_null_space(options.null_space, constraints, m);
   refuse_contradictions(*null_space, 1e-6 * basis.mean_edge_length());
   ElasticEquilibrium body(energy, *null_space, options);
   LoadStepResult result;
+  result.warnings = std::move(warnings);
   set_state(body, result);
   StepSizes sizes(options);
   while (result.fraction < 1) {
@@ -163,7 +178,7 @@ LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<
     LoadStepRecord record;
     if (const auto failure = body.advance(share, basis, record)) {
       if (sizes.failed(share)) continue;
-      result.factorizations = body.num_factorizations();
+      judge_state(body, constraints, options, result);
       give_up(*failure, std::move(result));
     }
     sizes.succeeded(record.newton_iterations);
@@ -174,9 +189,17 @@ LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<
     set_state(body, result);
     if (progress && !progress(record)) break;
   }
-  warn_of_reactions(constraints, options.suspicious_reaction, result);
-  warn_of_instability(result);
+  judge_state(body, constraints, options, result);
   return result;
+}
+
+}  // namespace
+
+LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
+                              const LinearConstraints& constraints, const LoadStepOptions& options,
+                              const LoadStepCallback& progress) {
+  check_options(options);
+  return load(energy, basis, constraints, options, progress, {});
 }
 
 LoadStepResult deform_elastically(const ElasticDeformation& deformation,
@@ -198,9 +221,7 @@ LoadStepResult deform_elastically(const ElasticDeformation& deformation,
       pair_constraints(deformation, pairs, options.null_space, independent, warnings);
   check_no_floating_part(pairs, independent, basis);
   const ElasticEnergy<2> energy(basis, deformation.material, deformation.affine);
-  LoadStepResult result = run_load_steps(energy, basis, constraints, options, progress);
-  result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
-  return result;
+  return load(energy, basis, constraints, options, progress, std::move(warnings));
 }
 
 SplineTransform<2> transform_of(const ElasticDeformation& deformation,

@@ -78,6 +78,12 @@ void add_load_steps(const ElasticStory& story, HtmlReport& report) {
       "The pairs pull the body from rest to their places in steps; after each, Newton's method "
       "brings "
       "it to equilibrium. A pair with a reaction far above the others may be wrong.");
+  if (const auto& error = story.outcome.registration.load.quadrature_error) {
+    report.add_text(fmt::format(
+        "Energies were integrated at 12 points per triangle: the stiffness matrix is off by {:.2g} "
+        "% of its norm.",
+        100 * *error));
+  }
   ReportTable table{.title = "Load steps",
                     .columns = {"step", "load", "Newton iterations", "residual", "least det",
                                 "largest reaction", "at pair", "factorizations", "tangent"},

@@ -116,12 +116,11 @@ void judge_state(ElasticEquilibrium& body, const LinearConstraints& constraints,
 }
 
 [[noreturn]] void give_up(const std::string& reason, LoadStepResult result) {
-  throw NoEquilibrium(
-      message(
-          "no elastic equilibrium beyond load fraction ", result.fraction, ": ", reason,
-          ". More pairs there, plane stress or neo-Hookean tissue may help; so may a look at the "
-          "pairs with the largest reactions."),
-      std::move(result));
+  const std::string text = message(
+      "no elastic equilibrium beyond load fraction ", result.fraction, ": ", reason,
+      ". More pairs there, plane stress or neo-Hookean tissue may help; so may a look at the pairs "
+      "with the largest reactions.");
+  throw NoEquilibrium(text, std::move(result));
 }
 
 LandmarkOptions pair_options() {
@@ -148,6 +147,14 @@ LinearConstraints pair_constraints(const ElasticDeformation& deformation, const 
   return constraints;
 }
 
+/// By cells with the degree that is exact at rest.
+double quadrature_error(const ElasticEnergy<2>& energy, const ElasticDeformation& deformation) {
+  const SplineBasis<2>& basis = *deformation.basis;
+  const ElasticOptions<2> exact{.quadrature_degree = basis.product_degree(2, 1)};
+  return relative_tangent_difference(
+      energy, ElasticEnergy<2>(basis, deformation.material, deformation.affine, exact));
+}
+
 void warn_of_locking(const ElasticDeformation& deformation, std::vector<std::string>& warnings) {
   const ElasticMaterial& material = deformation.material;
   double largest = material.tissue.poisson;
@@ -160,17 +167,15 @@ void warn_of_locking(const ElasticDeformation& deformation, std::vector<std::str
                              kLockingPoisson, "; use degree 2"));
 }
 
-/// @param warnings  of what was done before: the first ones of the result, and of its failure.
+/// @param result  with what is known beforehand, such as warnings; it is filled, and part of a failure.
 LoadStepResult load(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
                     const LinearConstraints& constraints, const LoadStepOptions& options,
-                    const LoadStepCallback& progress, std::vector<std::string> warnings) {
+                    const LoadStepCallback& progress, LoadStepResult result) {
   const Eigen::Index m =
       constraints.d.cols() == 2 ? basis.num_control_points() : 2 * basis.num_control_points();
   const auto null_space = make_null_space(options.null_space, constraints, m);
   refuse_contradictions(*null_space, 1e-6 * basis.mean_edge_length());
   ElasticEquilibrium body(energy, *null_space, options);
-  LoadStepResult result;
-  result.warnings = std::move(warnings);
   set_state(body, result);
   StepSizes sizes(options);
   while (result.fraction < 1) {
@@ -210,18 +215,23 @@ LoadStepResult deform_elastically(const ElasticDeformation& deformation,
   const SplineBasis<2>& basis = *deformation.basis;
   Landmarks<2> pairs = deformation.pairs;
   pairs.sigma_mm.clear();  // all are met exactly
-  std::vector<std::string> warnings = snap_to_domain(pairs, basis, options.snap_mm);
+  LoadStepResult result;
+  result.warnings = snap_to_domain(pairs, basis, options.snap_mm);
   const auto contours = deformation.contour.empty()
                             ? pairs_along_border(pairs, basis, options.snap_mm)
                             : std::vector<std::vector<int>>{deformation.contour};
   for (const auto& contour : contours) check_no_crossing(pairs, contour);
-  warn_of_locking(deformation, warnings);
+  warn_of_locking(deformation, result.warnings);
   std::vector<int> independent;
   const LinearConstraints constraints =
-      pair_constraints(deformation, pairs, options.null_space, independent, warnings);
+      pair_constraints(deformation, pairs, options.null_space, independent, result.warnings);
   check_no_floating_part(pairs, independent, basis);
-  const ElasticEnergy<2> energy(basis, deformation.material, deformation.affine);
-  return load(energy, basis, constraints, options, progress, std::move(warnings));
+  const ElasticEnergy<2> energy(basis, deformation.material, deformation.affine,
+                                {.quadrature = deformation.quadrature});
+  if (deformation.quadrature != ElasticQuadrature::kCells) {
+    result.quadrature_error = quadrature_error(energy, deformation);
+  }
+  return load(energy, basis, constraints, options, progress, std::move(result));
 }
 
 SplineTransform<2> transform_of(const ElasticDeformation& deformation,

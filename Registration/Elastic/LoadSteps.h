@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,8 @@ struct LoadStepResult {
   LeastDeterminant<2> least_determinant;
   /// The tangent is not positive definite: a small push would let the body leave this equilibrium (buckle).
   bool unstable = false;
+  /// Of a quadrature that is not exact: relative_tangent_difference() from one that is.
+  std::optional<double> quadrature_error;
   int factorizations = 0;
   std::vector<std::string> warnings;
 };
@@ -125,6 +128,7 @@ struct ElasticDeformation {
   std::vector<int> contour = {};
   /// T = A + u at rest; its strain counts.
   AffineMap<2> affine = {};
+  ElasticQuadrature quadrature = ElasticQuadrature::kCells;
 };
 
 /// The same for pairs of points; `reactions` has one row per pair, warnings say which pairs were moved onto

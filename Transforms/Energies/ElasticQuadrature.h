@@ -9,8 +9,8 @@ namespace crease {
 /// Where an elastic energy of triangular B-splines is integrated.
 enum class ElasticQuadrature {
   kCells,  ///< in every cell of the knot lines, where the splines are polynomials: exact
-  /// At 12 points per triangle, whatever its cells: some twenty times fewer points, but knot lines between
-  /// them are not seen, and the stiffness is off by about one per cent.
+  /// At 12 points per triangle, whatever its cells: some ten times fewer points, but knot lines between
+  /// them are not seen, and the stiffness is off by some per cent.
   kCheap
 };
 

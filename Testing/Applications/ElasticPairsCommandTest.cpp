@@ -139,9 +139,9 @@ class ElasticMammograms : public testing::CommandFixture {
 
   std::string in(const char* name) const { return (folder / name).string(); }
 
-  void draw(const std::string& view) const {
+  void draw(const std::string& view, const char* pair = "--temporal") const {
     ASSERT_EQ(run_crease({"phantom", "mammogram", "--seed", "3", "--size", "256", "--view", view,
-                          "--output", folder.path().string(), "--quiet"})
+                          pair, "--output", folder.path().string(), "--quiet"})
                   .code,
               0);
   }
@@ -179,6 +179,14 @@ TEST_F(ElasticMammograms, NegativesAndOtherBitDepthsAreBroughtToOneScale) {
   EXPECT_THAT(result["notes"].dump(), HasSubstr("was inverted"));
   // The darkest grey is that of the fixed image now, as it was not before; on two scales it would be 0.
   EXPECT_NEAR(result["improvement_percent"]["pairs"], once, 10);
+}
+
+// The other breast is registered as its mirror image; messages have the places of the file.
+TEST_F(ElasticMammograms, PairsOutsideAMirroredBreastAreNamedAsGiven) {
+  draw("mlo", "--bilateral");
+  std::ofstream(in("seen.csv")) << "fixed_x,fixed_y,moving_x,moving_y\n60,100,3,100\n";
+  expect_refused(run({"--pairs", in("seen.csv"), "--contour-pairs", "9"}), 3,
+                 {"pair 1: the moving point (3.00, 100.00) mm", "outside the moving image's body"});
 }
 
 // A given pair on one that was found along the skin takes its place.

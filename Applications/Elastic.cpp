@@ -7,6 +7,7 @@
 #include "Applications/ElasticFigures.h"
 #include "Applications/EvaluationReport.h"
 #include "Applications/Report/ElasticReport.h"
+#include "Core/Error.h"
 
 namespace crease {
 namespace {
@@ -45,10 +46,6 @@ std::vector<std::string> input_files(const ElasticCommandOptions& o) {
 void add_warnings(const ElasticOutcome& outcome, const Evaluation<2>& evaluation,
                   RunReport& report) {
   const auto& registration = outcome.registration;
-  if (!registration.failure.empty()) {
-    report.add_warning("no equilibrium: " + registration.failure +
-                       " The result is the last equilibrium on the way, not refined.");
-  }
   if (evaluation.jacobian.folded > 0) {
     report.add_warning(folding_text(evaluation.jacobian, evaluation.samples) + ".");
   }
@@ -84,6 +81,9 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   for (const std::string& warning : report.warnings()) progress.warn(warning);
 
   const bool converged = outcome.registration.failure.empty();
+  const std::string failure =
+      outcome.registration.failure + " The result is the last equilibrium on the way, not refined.";
+  if (!converged) report.add_warning(failure);
   const char* status = converged ? "ok" : "not_converged";
   const ElasticStory story{options, input, outcome, evaluation, certificate, errors};
   const Json figures = figures_json(story);
@@ -93,7 +93,8 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   const std::string json = report.to_json(status, figures);
   output.finish(json);
   std::cout << (options.run.json ? json : summary_text(story, report.elapsed_s()));
-  return converged ? ExitCode::kSuccess : ExitCode::kNotConverged;
+  if (!converged) throw SolverError(failure);  // all is written: what is left is to say why
+  return ExitCode::kSuccess;
 }
 
 ExitCode run(const ElasticCommandOptions& options, const std::string& config) {

@@ -140,6 +140,11 @@ std::vector<Option> solver_options(ElasticCommandOptions& o) {
        .target = &o.corrector,
        .help = "Newton to equilibrium in each load step, or none as the dissertation has it",
        .choices = {"newton", "none"}},
+      {.name = "quadrature",
+       .target = &o.quadrature,
+       .help = "Integrate stored energy in every cell of the knot lines, exactly, or at 12 points "
+               "per triangle; how much that is off is reported",
+       .choices = {"cells", "cheap"}},
       {.name = "no-refine",
        .target = &o.no_refine,
        .help = "Stop after the pairs: no refinement by the images"},

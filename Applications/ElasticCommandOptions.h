@@ -30,6 +30,7 @@ struct ElasticCommandOptions {
   bool no_creases = false;
   std::string steps = "20";
   std::string corrector = "newton";
+  std::string quadrature = "cells";
   bool no_refine = false;
   std::string metric = "ssd";
   std::string refinement = "gauss-newton";

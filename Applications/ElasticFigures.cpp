@@ -147,7 +147,10 @@ Json figures_json(const ElasticStory& story) {
   json["control_points"] = domain.basis->num_control_points();
   json["unknowns"] = 2 * domain.basis->num_control_points();
   json["material"] = material_json(story);
+  json["quadrature"] = {{"rule", story.options.quadrature},
+                        {"relative_error", or_null(registration.load.quadrature_error)}};
   json["equilibrium"] = registration.failure.empty();
+  json["unstable_equilibrium"] = registration.load.unstable;
   json["load_fraction"] = registration.load.fraction;
   json["load_steps"] = load_steps_json(registration.load);
   json["refinement"] = registration.refinement ? refinement_json(*registration.refinement) : Json();
@@ -170,17 +173,24 @@ std::string summary_text(const ElasticStory& story, double seconds) {
   const auto line = [&](const std::string& name, const std::string& value) {
     text += fmt::format("{:<22} {}\n", name, value);
   };
+  for (const std::string& note : story.input.notes) line("note", note);
   line("breast", breast_text(story.input));
   line("pairs", pairs_text(story.input));
   line("mesh", fmt::format("{} triangles, {} unknowns", domain.mesh.mesh.simplices.size(),
                            2 * domain.basis->num_control_points()));
+  if (const auto& error = registration.load.quadrature_error) {
+    line("quadrature",
+         fmt::format("12 points per triangle, stiffness off by {:.2g} %", 100 * *error));
+  }
   for (const LoadStepRecord& step : registration.load.steps) {
     line(fmt::format("load step {}", step.step),
          fmt::format("{:5.1f} %, {} Newton iterations, min det {:.3f}, largest reaction {:.4g} at "
-                     "pair {}",
+                     "pair {}{}",
                      100 * step.fraction, step.newton_iterations, step.least_determinant,
-                     step.largest_reaction, step.largest_reaction_row + 1));
+                     step.largest_reaction, step.largest_reaction_row + 1,
+                     step.unstable ? ", unstable equilibrium" : ""));
   }
+  if (registration.load.unstable) line("equilibrium", "unstable: a small push would end it");
   line("improvement",
        improvement_text(registration, registration.improvement_by_pairs) + " by the pairs");
   if (registration.refinement) {

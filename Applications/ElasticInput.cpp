@@ -5,10 +5,12 @@
 
 #include "Applications/ExitCode.h"
 #include "Applications/RegionInput.h"
+#include "Images/IntensityRange.h"
 #include "Images/RasterCheck.h"
 #include "Registration/Elastic/BodyOutline.h"
 #include "Registration/Elastic/PairPlaces.h"
 #include "Registration/Mammogram/ContourPairs.h"
+#include "Registration/Mammogram/GreyScale.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 
 namespace crease {
@@ -55,6 +57,23 @@ MammogramAnatomy anatomy_of(const ElasticCommandOptions& options, const ReadImag
   return anatomy;
 }
 
+/// Brings the moving image to the fixed one's grey values where their bit depths differ, and where one of them was a
+/// negative, whose film may have been less than white.
+void take_grey_scale(const ElasticCommandOptions& options, ElasticInput& input) {
+  Image<float, 2>& moving = input.moving.image;
+  const double factor = bit_depth_ratio(moving, input.fixed.image);
+  double shift = 0;
+  if (input.fixed_anatomy->frame.inverted != input.moving_anatomy->frame.inverted) {
+    shift = intensity_range(input.fixed.image).lower - factor * intensity_range(moving).lower;
+  }
+  if (factor == 1 && shift == 0) return;
+  for (float& grey : moving.values()) grey = static_cast<float>(factor * grey + shift);
+  input.moving.pixel_type = input.fixed.pixel_type;
+  input.notes.push_back(message(options.moving, ": grey values were multiplied by ", factor,
+                                " and shifted by ", shift, " to be on the scale of ",
+                                options.fixed));
+}
+
 void look_at_mammograms(const ElasticCommandOptions& options, ElasticInput& input,
                         RunReport& report) {
   input.fixed_anatomy = anatomy_of(options, input.fixed, options.fixed, true, input.notes, report);
@@ -69,6 +88,7 @@ void look_at_mammograms(const ElasticCommandOptions& options, ElasticInput& inpu
   input.fixed.image = upright_image(std::move(input.fixed.image), fixed.frame);
   input.moving.image = upright_image(std::move(input.moving.image), moving.frame);
   input.moving_region = RegionOfInterest({moving.region});
+  take_grey_scale(options, input);
 }
 
 /// Where the muscle lies: the upper corner at the chest wall, as the picture is seen.
@@ -120,19 +140,30 @@ void set_body(const ElasticCommandOptions& options, const Raster<2>& given, Elas
   set_muscle(options, input, report);
 }
 
+/// Pairs as they are given, into the moving image as it is given.
+std::vector<std::string> snap_to_moving_body(ElasticInput& input) {
+  if (!input.moving_region) {
+    return snap_moving_points(input.pairs, rectangle_of(input.moving.image.raster()),
+                              "the moving image");
+  }
+  std::vector<Polyline> rings = input.moving_region->rings();
+  for (Polyline& ring : rings) {
+    for (Point<2>& p : ring) p = input.to_given(p);
+  }
+  return snap_moving_points(input.pairs, RegionOfInterest(std::move(rings)));
+}
+
 /// Given pairs first, then those along the skin.
 void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputFiles& files,
                RunReport& report) {
   if (!options.pairs.empty()) {
     input.pairs = files.landmarks<2>("pairs", options.pairs);
+    report.add_warnings(snap_to_moving_body(input));
     // A reflection is its own inverse.
     for (Point<2>& q : input.pairs.moving) q = input.to_given(q);
     input.pairs.sigma_mm.clear();     // all are met exactly
     input.pairs.fixed_angle.clear();  // directions are not used
     input.pairs.moving_angle.clear();
-    if (input.moving_region) {
-      report.add_warnings(snap_moving_points(input.pairs, *input.moving_region));
-    }
   }
   if (options.num_contour_pairs() == 0) return;
   ContourPairOptions wanted;
@@ -149,6 +180,7 @@ void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputF
   append(input.pairs.names, found.landmarks.names);
   input.contour.resize(found.landmarks.fixed.size());
   std::iota(input.contour.begin(), input.contour.end(), first);
+  report.add_warnings(leave_out_contour_pairs_at_others(input.pairs, input.contour));
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ ElasticRegistrationOptions registration_options(const ElasticCommandOptions& o) 
     options.load.steps = o.num_steps();
   }
   if (o.corrector == "none") options.load.corrector = LoadCorrector::kNone;
+  if (o.quadrature == "cheap") options.quadrature = ElasticQuadrature::kCheap;
   options.refine = !o.no_refine;
   options.pin_contour = o.pin == "contour";
   ImageRefinementOptions& refinement = options.refinement;

@@ -13,24 +13,6 @@
 namespace crease {
 namespace {
 
-constexpr const char* kRemedies =
-    "; give them a sigma (soft landmarks), use smaller triangles there (--landmarks-conflict "
-    "refine, "
-    "or --mesh-size), or accept the least-squares compromise (--landmarks-conflict compromise)";
-
-/// "landmarks 3, 4 and 9", counted from 1 as in the file; "and 25 more" ends a long list.
-std::string listed(const std::vector<int>& landmarks) {
-  constexpr std::size_t kMost = 12;
-  std::string text = landmarks.size() == 1 ? "landmark " : "landmarks ";
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    const bool cut = i + 1 == kMost && landmarks.size() > kMost;
-    if (i > 0) text += cut || i + 1 == landmarks.size() ? " and " : ", ";
-    if (cut) return text + message(landmarks.size() - i, " more");
-    text += std::to_string(landmarks[i] + 1);
-  }
-  return text;
-}
-
 template <int Dim>
 std::string point_text(const Point<Dim>& p) {
   std::string text = "(";
@@ -40,12 +22,13 @@ std::string point_text(const Point<Dim>& p) {
 
 /// Soft landmarks, too: nothing is known of the map out there.
 template <int Dim>
-void refuse_outside(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& basis) {
+void refuse_outside(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& basis,
+                    const LandmarkWords& words) {
   for (std::size_t j = 0; j < landmarks.fixed.size(); ++j) {
     const Point<Dim>& p = landmarks.fixed[j];
     if (basis.contains(p)) continue;
     throw InvalidInput(
-        message("landmark ", j + 1, ": the fixed point ", point_text<Dim>(p), " lies ",
+        message(words.one(static_cast<int>(j)), ": the fixed point ", point_text<Dim>(p), " lies ",
                 (basis.nearest_point(p) - p).norm(),
                 " mm outside the domain; move or delete it, or enlarge the region of "
                 "interest"));
@@ -54,7 +37,7 @@ void refuse_outside(const Landmarks<Dim>& landmarks, const SplineBasis<Dim>& bas
 
 template <int Dim>
 void refuse_two_partners(const Landmarks<Dim>& landmarks, const std::vector<int>& chosen,
-                         double tolerance) {
+                         double tolerance, const LandmarkWords& words) {
   for (std::size_t a = 0; a < chosen.size(); ++a) {
     for (std::size_t b = a + 1; b < chosen.size(); ++b) {
       const auto i = static_cast<std::size_t>(chosen[a]), j = static_cast<std::size_t>(chosen[b]);
@@ -62,7 +45,7 @@ void refuse_two_partners(const Landmarks<Dim>& landmarks, const std::vector<int>
       const double apart = (landmarks.moving[i] - landmarks.moving[j]).norm();
       if (apart <= tolerance) continue;
       throw InvalidInput(
-          message(listed({chosen[a], chosen[b]}), " share the fixed point ",
+          message(words.listed({chosen[a], chosen[b]}), " share the fixed point ",
                   point_text<Dim>(landmarks.fixed[i]), " but their partners are ", apart,
                   " mm apart: one point cannot go to two places; delete one of them"));
     }
@@ -119,19 +102,20 @@ std::string place_text(const Point<Dim>& p, const SplineBasis<Dim>& basis) {
 template <int Dim>
 LandmarkContradiction contradiction(const std::vector<DependentRow>& rows,
                                     const std::vector<int>& chosen, const Landmarks<Dim>& landmarks,
-                                    const std::function<std::string(const Point<Dim>&)>& place) {
+                                    const std::function<std::string(const Point<Dim>&)>& place,
+                                    const LandmarkWords& words) {
   constexpr std::size_t kMost = 5;
   std::set<int> all;
-  std::string text = "the exact landmarks contradict each other: ";
+  std::string text = "the exact " + words.noun + "s contradict each other: ";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const int landmark = chosen[static_cast<std::size_t>(rows[i].row)];
     const std::vector<int> others = with_dependents(rows[i], chosen);
     all.insert(landmark);
     all.insert(others.begin(), others.end());
     if (i >= kMost) continue;
-    text += message(i > 0 ? "; landmark " : "landmark ", landmark + 1, " at ",
+    text += message(i > 0 ? "; " : "", words.one(landmark), " at ",
                     place(landmarks.fixed[static_cast<std::size_t>(landmark)]), ", misses what ",
-                    listed(others), " imply by ", rows[i].residual.norm(), " mm");
+                    words.listed(others), " imply by ", rows[i].residual.norm(), " mm");
   }
   if (rows.size() > kMost) text += message("; and ", rows.size() - kMost, " more");
   return {{all.begin(), all.end()}, std::move(text)};
@@ -170,24 +154,28 @@ std::unique_ptr<NullSpace> agreed_null_space(const NullSpace& all,
 template <int Dim>
 LandmarkConstraints<Dim> resolved(std::unique_ptr<NullSpace> null_space,
                                   const Landmarks<Dim>& landmarks, const std::vector<int>& of_rows,
-                                  double tolerance, LandmarkConflict conflict, NullSpaceKind kind,
+                                  double tolerance, const LandmarkOptions& options,
+                                  NullSpaceKind kind,
                                   const std::function<std::string(const Point<Dim>&)>& place) {
   LandmarkConstraints<Dim> result;
+  const LandmarkWords& words = options.words;
   const DependentRowClasses classes = classify_dependent_rows(*null_space, tolerance);
   for (const DependentRow& row : classes.redundant) {
     std::string note =
-        message("landmark ", of_rows[static_cast<std::size_t>(row.row)] + 1, " follows from ",
-                listed(with_dependents(row, of_rows)), "; ignored");
+        message(words.one(of_rows[static_cast<std::size_t>(row.row)]), " follows from ",
+                words.listed(with_dependents(row, of_rows)), "; ignored");
     if (result.notes.empty() || result.notes.back() != note)
       result.notes.push_back(std::move(note));
   }
   result.contradictory = !classes.contradictory.empty();
   if (result.contradictory) {
-    const auto found = contradiction<Dim>(classes.contradictory, of_rows, landmarks, place);
-    if (conflict == LandmarkConflict::kError) throw InvalidInput(message(found.text, kRemedies));
+    const auto found = contradiction<Dim>(classes.contradictory, of_rows, landmarks, place, words);
+    if (options.conflict == LandmarkConflict::kError) {
+      throw InvalidInput(message(found.text, "; ", words.remedies));
+    }
     null_space = agreed_null_space(*null_space, found, of_rows, kind);
-    result.notes.push_back(message(found.text, "; these ", found.landmarks.size(),
-                                   " landmarks are met in the least-squares sense"));
+    result.notes.push_back(message(found.text, "; these ", found.landmarks.size(), " ", words.noun,
+                                   "s are met in the least-squares sense"));
   }
   result.null_space = std::move(null_space);
   return result;
@@ -238,16 +226,18 @@ std::optional<LandmarkContradiction> find_contradiction(const Landmarks<Dim>& la
                                                         LandmarkMode mode) {
   const std::vector<int> chosen = exact_landmarks(landmarks, mode);
   const double tolerance = 1e-6 * basis.mean_edge_length();
-  refuse_outside(landmarks, basis);
-  refuse_two_partners(landmarks, chosen, tolerance);
+  const LandmarkWords words;
+  refuse_outside(landmarks, basis, words);
+  refuse_two_partners(landmarks, chosen, tolerance, words);
   if (chosen.empty()) return std::nullopt;
   const auto null_space = make_null_space(NullSpaceKind::kElimination,
                                           rows_of(landmarks, basis, AffineMap<Dim>(), chosen),
                                           basis.num_control_points());
   const auto rows = classify_dependent_rows(*null_space, tolerance).contradictory;
   if (rows.empty()) return std::nullopt;
-  return contradiction<Dim>(rows, chosen, landmarks,
-                            [&](const Point<Dim>& p) { return place_text<Dim>(p, basis); });
+  return contradiction<Dim>(
+      rows, chosen, landmarks, [&](const Point<Dim>& p) { return place_text<Dim>(p, basis); },
+      words);
 }
 
 template <int Dim>
@@ -283,22 +273,23 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
                                                    NullSpaceKind kind) {
   const std::vector<int> chosen = exact_landmarks(landmarks, options.mode);
   const double tolerance = 1e-6 * basis.mean_edge_length();
-  refuse_outside(landmarks, basis);
-  refuse_two_partners(landmarks, chosen, tolerance);
+  refuse_outside(landmarks, basis, options.words);
+  refuse_two_partners(landmarks, chosen, tolerance, options.words);
 
   LandmarkConstraints<Dim> result =
       resolved<Dim>(make_null_space(kind,
                                     chosen.empty() ? no_constraints(basis.num_control_points(), Dim)
                                                    : rows_of(landmarks, basis, affine, chosen),
                                     basis.num_control_points()),
-                    landmarks, chosen, tolerance, options.conflict, kind,
+                    landmarks, chosen, tolerance, options, kind,
                     [&](const Point<Dim>& p) { return place_text<Dim>(p, basis); });
   if (result.contradictory) return result;
   const auto strain = landmark_strain(landmarks, basis, options.mode, kLargestLandmarkStrain);
   if (strain.magnification > kLargestLandmarkStrain) {
-    result.notes.push_back(message("exact ", listed(strain.landmarks),
+    result.notes.push_back(message("exact ", options.words.listed(strain.landmarks),
                                    " nearly contradict each other: the map bends ",
-                                   strain.magnification, " times as far as they move", kRemedies));
+                                   strain.magnification, " times as far as they move; ",
+                                   options.words.remedies));
   }
   return result;
 }
@@ -310,7 +301,7 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
                                                    NullSpaceKind kind) {
   const std::vector<int> chosen = exact_landmarks(landmarks, options.mode);
   const double tolerance = 1e-6 * length;
-  refuse_two_partners(landmarks, chosen, tolerance);
+  refuse_two_partners(landmarks, chosen, tolerance, options.words);
   if (chosen.empty()) {
     const auto none = no_constraints(transform.num_parameters());
     return {make_null_space(kind, none, transform.num_parameters()), {}, false};
@@ -323,7 +314,7 @@ LandmarkConstraints<Dim> make_landmark_constraints(const Landmarks<Dim>& landmar
   std::vector<int> of_rows;
   for (int j : chosen) of_rows.insert(of_rows.end(), Dim, j);
   return resolved<Dim>(make_null_space(used, std::move(rows), transform.num_parameters()),
-                       landmarks, of_rows, tolerance, options.conflict, used,
+                       landmarks, of_rows, tolerance, options, used,
                        [](const Point<Dim>& p) { return point_text<Dim>(p); });
 }
 

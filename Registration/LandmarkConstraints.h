@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "Optimizers/NullSpace.h"
+#include "Registration/LandmarkWords.h"
 #include "Registration/Landmarks.h"
 #include "Transforms/AffineMap.h"
 #include "Transforms/Energies/LandmarkEnergy.h"
@@ -25,6 +26,7 @@ struct LandmarkOptions {
   LandmarkConflict conflict = LandmarkConflict::kError;
   double sigma_mm = 1;  ///< soft landmarks without a sigma of their own
   double weight = 1;    ///< lambda of the soft landmarks
+  LandmarkWords words = {};
 };
 
 /// Exact landmarks as linear constraints on the control points, T(p_j) = q_j, and their null space.

@@ -66,6 +66,8 @@ double RegistrationObjective<Dim>::evaluate(const Eigen::Ref<const Eigen::Vector
   }
   for (const auto& [name, weight, energy] : energies_) {
     const double term = energy->evaluate(phi, weight, forces_wanted, curvature);
+    // Tissue that would be turned inside out: a step that went too far, but for the start.
+    if (evaluated_ && term == std::numeric_limits<double>::infinity()) return term;
     require_finite(term, name);
     terms_[name] = term;
     value += weight * term;

@@ -78,9 +78,15 @@ void add_load_steps(const ElasticStory& story, HtmlReport& report) {
       "The pairs pull the body from rest to their places in steps; after each, Newton's method "
       "brings "
       "it to equilibrium. A pair with a reaction far above the others may be wrong.");
+  if (const auto& error = story.outcome.registration.load.quadrature_error) {
+    report.add_text(fmt::format(
+        "Energies were integrated at 12 points per triangle: the stiffness matrix is off by {:.2g} "
+        "% of its norm.",
+        100 * *error));
+  }
   ReportTable table{.title = "Load steps",
                     .columns = {"step", "load", "Newton iterations", "residual", "least det",
-                                "largest reaction", "at pair", "factorizations"},
+                                "largest reaction", "at pair", "factorizations", "tangent"},
                     .numbers = {0, 1, 2, 3, 4, 5, 6, 7}};
   for (const LoadStepRecord& step : story.outcome.registration.load.steps) {
     table.rows.push_back(
@@ -88,7 +94,8 @@ void add_load_steps(const ElasticStory& story, HtmlReport& report) {
          std::to_string(step.newton_iterations), fmt::format("{:.1e}", step.residual()),
          fmt::format("{:.3f}", step.least_determinant),
          fmt::format("{:.4g}", step.largest_reaction),
-         std::to_string(step.largest_reaction_row + 1), std::to_string(step.factorizations)});
+         std::to_string(step.largest_reaction_row + 1), std::to_string(step.factorizations),
+         step.unstable ? "not positive definite" : "positive definite"});
   }
   report.add_table(table);
   const LoadStepResult& load = story.outcome.registration.load;

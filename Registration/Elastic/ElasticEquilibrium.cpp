@@ -9,6 +9,10 @@ namespace crease {
 namespace {
 
 constexpr double kForceFloor = 1e-13;  // times stiffness and size of the body
+/// Shares of its diagonal by which an indefinite tangent is shifted; the last one is beyond any need of a
+/// matrix that is finite.
+constexpr double kFirstShift = 1e-4, kLastShift = 1e12;
+constexpr double kLeastUnit = 1e-6;  // of the shift, in units of the mean one
 
 /// Tight enough for Newton's method to go on converging fast.
 constexpr LinearSolverOptions kConjugateGradients = {
@@ -72,17 +76,30 @@ void ElasticEquilibrium::assemble() {
   solver_.hessian_changed();
 }
 
-/// Shifts the tangent by shares of its diagonal until it is positive definite.
+/// Shifts an indefinite tangent until it is positive definite; it stays shifted.
 std::optional<Eigen::VectorXd> ElasticEquilibrium::solve(const Eigen::VectorXd& rhs,
                                                          bool& unstable) {
-  constexpr double kFirstShift = 1e-4, kLastShift = 1e2;
-  unstable = false;
-  if (auto y = solver_.solve(rhs, 0)) return y;
-  unstable = true;
-  for (double shift = kFirstShift; shift <= kLastShift; shift *= 10) {
-    if (auto y = solver_.solve(rhs, shift)) return y;
+  auto y = solver_.solve(rhs, 0);
+  unstable = !y;
+  if (y) return y;
+  Eigen::SparseMatrix<double>& tangent = solver_.hessian();
+  const Eigen::VectorXd diagonal = tangent.diagonal();
+  const Eigen::VectorXd size = diagonal.cwiseAbs();
+  const Eigen::VectorXd unit = size.cwiseMax(kLeastUnit * size.mean());
+  for (double shift = kFirstShift; !y && shift <= kLastShift; shift *= 10) {
+    tangent.diagonal() = diagonal + shift * unit;
+    solver_.hessian_changed();
+    y = solver_.solve(rhs, 0);
   }
-  return std::nullopt;
+  return y;
+}
+
+bool ElasticEquilibrium::stable() {
+  assemble();
+  const Eigen::SparseMatrix<double>& tangent = solver_.hessian();
+  if (tangent.cols() == 0) return true;
+  ++further_factorizations_;
+  return SparseCholesky().factor(tangent);
 }
 
 std::optional<std::string> ElasticEquilibrium::predict(double share, bool& unstable) {

@@ -12,6 +12,14 @@
 namespace crease {
 
 /// The state of a body under constraints, with what is known of it, and the steps that load it further.
+///
+/// Where the reduced tangent H = N^T K N is not positive definite, the body can buckle, and a Newton step may
+/// lead uphill or to a saddle. Then H + mu D takes its place, D = |diag(H)| (not below 1e-6 of its mean) and
+/// mu the first of 1e-4, 1e-3, .. for which a Cholesky factor exists: one does in the end, for large mu makes
+/// the diagonal dominate. The step is then one of descent for W, as it would be with a shifted LDL^T factor.
+/// All that such a factor of H itself would add is the number of negative pivots, and all that is asked here
+/// is whether there are any. D rather than the identity makes steps independent of the unit of stress, and
+/// lets soft tissue move where stiff tissue buckles.
 class ElasticEquilibrium {
  public:
   /// All must outlive this. @param null_space  of C U = d, d the whole load.
@@ -28,7 +36,10 @@ class ElasticEquilibrium {
   double energy() const { return state_.energy; }
   const LeastDeterminant<2>& least_determinant() const { return state_.least; }
   const RowMatrix& reactions() const { return state_.reactions; }
-  int num_factorizations() const { return solver_.num_factorizations(); }
+  /// Whether the tangent is positive definite in this very state: W is at a minimum, which no small push can
+  /// leave. One factorization.
+  bool stable();
+  int num_factorizations() const { return solver_.num_factorizations() + further_factorizations_; }
 
  private:
   struct State {
@@ -55,6 +66,7 @@ class ElasticEquilibrium {
   Eigen::LDLT<Eigen::MatrixXd> gram_;                         // of C C^T
   double force_floor_;  // below which reactions are rounding, E mm
   DampedSolver solver_;
+  int further_factorizations_ = 0;
   BlockHessian<2> hessian_;
   Eigen::SparseMatrix<double> tangent_;  // K, lower triangle
   State state_;

@@ -43,7 +43,11 @@ class ElasticRun {
 
  private:
   void deform_by(const Landmarks<2>& pairs, const std::vector<int>& contour) {
-    const ElasticDeformation deformation{domain_.basis, body_.material, pairs, contour};
+    const ElasticDeformation deformation{.basis = domain_.basis,
+                                         .material = body_.material,
+                                         .pairs = pairs,
+                                         .contour = contour,
+                                         .quadrature = options_.quadrature};
     try {
       result_.load =
           deform_elastically(deformation, options_.load, [&](const LoadStepRecord& record) {

@@ -41,6 +41,7 @@ CreasedDomain make_elastic_domain(const ElasticBody& body,
 /// How a moving image is carried onto a fixed one by deforming an elastic body.
 struct ElasticRegistrationOptions {
   LoadStepOptions load;
+  ElasticQuadrature quadrature = ElasticQuadrature::kCells;  ///< of the load steps
   bool refine = true;
   /// Its material, pins and grid are set by the registration.
   ImageRefinementOptions refinement;

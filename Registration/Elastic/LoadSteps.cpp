@@ -53,11 +53,18 @@ void warn_of_reactions(const LinearConstraints& constraints, double suspicious,
 }
 
 void warn_of_instability(LoadStepResult& result) {
+  if (result.unstable) {
+    result.warnings.push_back(message(
+        "unstable equilibrium at load fraction ", result.fraction,
+        ": the tangent is not positive definite, and a small push would let the body buckle. "
+        "More pairs there hold it."));
+    return;
+  }
   for (const LoadStepRecord& record : result.steps) {
     if (!record.unstable) continue;
-    result.warnings.push_back(
-        message("unstable equilibrium at load fraction ", record.fraction,
-                ": the tangent is not positive definite, the body may buckle another way"));
+    result.warnings.push_back(message("unstable equilibrium on the way, at load fraction ",
+                                      record.fraction,
+                                      ": beyond it the body may have buckled one way or another."));
     return;
   }
 }
@@ -98,28 +105,53 @@ void set_state(const ElasticEquilibrium& body, LoadStepResult& result) {
   result.factorizations = body.num_factorizations();
 }
 
+/// What is told of the state that a run ends with.
+void judge_state(ElasticEquilibrium& body, const LinearConstraints& constraints,
+                 const LoadStepOptions& options, LoadStepResult& result) {
+  result.unstable = !body.stable();
+  result.factorizations = body.num_factorizations();
+  warn_of_reactions(constraints, options.suspicious_reaction, result);
+  warn_of_instability(result);
+}
+
 [[noreturn]] void give_up(const std::string& reason, LoadStepResult result) {
-  throw NoEquilibrium(
-      message(
-          "no elastic equilibrium beyond load fraction ", result.fraction, ": ", reason,
-          ". More pairs there, plane stress or neo-Hookean tissue may help; so may a look at the "
-          "pairs with the largest reactions."),
-      std::move(result));
+  const std::string text = message(
+      "no elastic equilibrium beyond load fraction ", result.fraction, ": ", reason,
+      ". More pairs there, plane stress or neo-Hookean tissue may help; so may a look at the pairs "
+      "with the largest reactions.");
+  throw NoEquilibrium(text, std::move(result));
+}
+
+LandmarkOptions pair_options() {
+  LandmarkOptions options;
+  options.words.noun = "pair";
+  options.words.remedies =
+      "correct or delete some of them, or use smaller triangles there (--mesh-size, or more "
+      "--triangles)";
+  return options;
 }
 
 /// Rows of the pairs' constraints, by their names.
 LinearConstraints pair_constraints(const ElasticDeformation& deformation, const Landmarks<2>& pairs,
                                    NullSpaceKind kind, std::vector<int>& independent,
                                    std::vector<std::string>& warnings) {
-  const auto found =
-      make_landmark_constraints<2>(pairs, *deformation.basis, deformation.affine, {}, kind);
+  const auto found = make_landmark_constraints<2>(pairs, *deformation.basis, deformation.affine,
+                                                  pair_options(), kind);
   warnings.insert(warnings.end(), found.notes.begin(), found.notes.end());
   independent = found.null_space->independent_rows();
   LinearConstraints constraints = found.null_space->constraints();
   for (std::size_t j = 0; j < constraints.names.size(); ++j) {
-    constraints.names[j] = message("pair ", j + 1);
+    constraints.names[j] = pair_options().words.one(static_cast<int>(j));
   }
   return constraints;
+}
+
+/// By cells with the degree that is exact at rest.
+double quadrature_error(const ElasticEnergy<2>& energy, const ElasticDeformation& deformation) {
+  const SplineBasis<2>& basis = *deformation.basis;
+  const ElasticOptions<2> exact{.quadrature_degree = basis.product_degree(2, 1)};
+  return relative_tangent_difference(
+      energy, ElasticEnergy<2>(basis, deformation.material, deformation.affine, exact));
 }
 
 void warn_of_locking(const ElasticDeformation& deformation, std::vector<std::string>& warnings) {
@@ -134,18 +166,15 @@ void warn_of_locking(const ElasticDeformation& deformation, std::vector<std::str
                              kLockingPoisson, "; use degree 2"));
 }
 
-}  // namespace
-
-LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
-                              const LinearConstraints& constraints, const LoadStepOptions& options,
-                              const LoadStepCallback& progress) {
-  check_options(options);
+/// @param result  with what is known beforehand, such as warnings; it is filled, and part of a failure.
+LoadStepResult load(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
+                    const LinearConstraints& constraints, const LoadStepOptions& options,
+                    const LoadStepCallback& progress, LoadStepResult result) {
   const Eigen::Index m =
       constraints.d.cols() == 2 ? basis.num_control_points() : 2 * basis.num_control_points();
   const auto null_space = make_null_space(options.null_space, constraints, m);
   refuse_contradictions(*null_space, 1e-6 * basis.mean_edge_length());
   ElasticEquilibrium body(energy, *null_space, options);
-  LoadStepResult result;
   set_state(body, result);
   StepSizes sizes(options);
   while (result.fraction < 1) {
@@ -153,7 +182,7 @@ LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<
     LoadStepRecord record;
     if (const auto failure = body.advance(share, basis, record)) {
       if (sizes.failed(share)) continue;
-      result.factorizations = body.num_factorizations();
+      judge_state(body, constraints, options, result);
       give_up(*failure, std::move(result));
     }
     sizes.succeeded(record.newton_iterations);
@@ -164,9 +193,17 @@ LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<
     set_state(body, result);
     if (progress && !progress(record)) break;
   }
-  warn_of_reactions(constraints, options.suspicious_reaction, result);
-  warn_of_instability(result);
+  judge_state(body, constraints, options, result);
   return result;
+}
+
+}  // namespace
+
+LoadStepResult run_load_steps(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
+                              const LinearConstraints& constraints, const LoadStepOptions& options,
+                              const LoadStepCallback& progress) {
+  check_options(options);
+  return load(energy, basis, constraints, options, progress, {});
 }
 
 LoadStepResult deform_elastically(const ElasticDeformation& deformation,
@@ -177,20 +214,23 @@ LoadStepResult deform_elastically(const ElasticDeformation& deformation,
   const SplineBasis<2>& basis = *deformation.basis;
   Landmarks<2> pairs = deformation.pairs;
   pairs.sigma_mm.clear();  // all are met exactly
-  std::vector<std::string> warnings = snap_to_domain(pairs, basis, options.snap_mm);
+  LoadStepResult result;
+  result.warnings = snap_to_domain(pairs, basis, options.snap_mm);
   const auto contours = deformation.contour.empty()
                             ? pairs_along_border(pairs, basis, options.snap_mm)
                             : std::vector<std::vector<int>>{deformation.contour};
   for (const auto& contour : contours) check_no_crossing(pairs, contour);
-  warn_of_locking(deformation, warnings);
+  warn_of_locking(deformation, result.warnings);
   std::vector<int> independent;
   const LinearConstraints constraints =
-      pair_constraints(deformation, pairs, options.null_space, independent, warnings);
+      pair_constraints(deformation, pairs, options.null_space, independent, result.warnings);
   check_no_floating_part(pairs, independent, basis);
-  const ElasticEnergy<2> energy(basis, deformation.material, deformation.affine);
-  LoadStepResult result = run_load_steps(energy, basis, constraints, options, progress);
-  result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
-  return result;
+  const ElasticEnergy<2> energy(basis, deformation.material, deformation.affine,
+                                {.quadrature = deformation.quadrature});
+  if (deformation.quadrature != ElasticQuadrature::kCells) {
+    result.quadrature_error = quadrature_error(energy, deformation);
+  }
+  return load(energy, basis, constraints, options, progress, std::move(result));
 }
 
 SplineTransform<2> transform_of(const ElasticDeformation& deformation,

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,8 @@ struct LoadStepRecord {
   double largest_reaction = 0;   ///< E mm (2D): force per thickness
   int largest_reaction_row = 0;  ///< the constraint (pair) that has it, from 0
   int factorizations = 0;
-  /// The tangent was not positive definite near the end of the step: the equilibrium is unstable.
+  /// The last tangent of the step was not positive definite: it ended in an unstable equilibrium, or close to
+  /// where the body becomes unstable.
   bool unstable = false;
 
   double residual() const { return residuals.empty() ? 0.0 : residuals.back(); }
@@ -75,6 +77,10 @@ struct LoadStepResult {
   RowMatrix reactions;
   std::vector<LoadStepRecord> steps;
   LeastDeterminant<2> least_determinant;
+  /// The tangent is not positive definite: a small push would let the body leave this equilibrium (buckle).
+  bool unstable = false;
+  /// Of a quadrature that is not exact: relative_tangent_difference() from one that is.
+  std::optional<double> quadrature_error;
   int factorizations = 0;
   std::vector<std::string> warnings;
 };
@@ -99,7 +105,8 @@ class NoEquilibrium : public SolverError {
 ///     dU = N y + dU0,   (N^T K N) y = -N^T (R + K dU0)
 ///
 /// The corrector ends when |N^T R| is small against the reactions; it searches along dU for a smaller W. A
-/// step that does not converge, or ends with det F <= 0, is halved.
+/// step that does not converge, or ends with det F <= 0, is halved. Where K is not positive definite it is
+/// shifted (ElasticEquilibrium); whether the last equilibrium is stable is told by its own tangent.
 ///
 /// @param constraints  for every coordinate alike (n rows by 2 columns) or coupling them (2 n rows by one).
 /// @param basis        of the energy; tells places.
@@ -121,6 +128,7 @@ struct ElasticDeformation {
   std::vector<int> contour = {};
   /// T = A + u at rest; its strain counts.
   AffineMap<2> affine = {};
+  ElasticQuadrature quadrature = ElasticQuadrature::kCells;
 };
 
 /// The same for pairs of points; `reactions` has one row per pair, warnings say which pairs were moved onto

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <numeric>
+#include <optional>
 
 #include "Core/Error.h"
 #include "Core/Quantiles.h"
@@ -49,6 +50,46 @@ std::vector<std::size_t> neighbours_of(const Landmarks<2>& pairs, std::size_t i)
   return others;
 }
 
+/// An interior pair that lies on a contour pair.
+struct NearPair {
+  std::size_t pair;
+  double distance;  // mm
+  const char* image;
+};
+
+std::optional<NearPair> interior_pair_at(const Landmarks<2>& pairs, std::size_t c,
+                                         const std::vector<char>& on_contour, double near_mm) {
+  for (std::size_t i = 0; i < pairs.fixed.size(); ++i) {
+    if (on_contour[i]) continue;
+    const double fixed = (pairs.fixed[i] - pairs.fixed[c]).norm();
+    const double moving = (pairs.moving[i] - pairs.moving[c]).norm();
+    if (fixed <= near_mm) return NearPair{i, fixed, "fixed"};
+    if (moving <= near_mm) return NearPair{i, moving, "moving"};
+  }
+  return std::nullopt;
+}
+
+/// Drops what is marked; a list that is shorter than the marks has no entries there.
+template <typename Entry>
+void erase_marked(std::vector<Entry>& list, const std::vector<char>& marked) {
+  std::vector<Entry> kept;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!marked[i]) kept.push_back(std::move(list[i]));
+  }
+  list = std::move(kept);
+}
+
+/// Drops the numbers that are marked, and counts the others without them.
+void renumber(std::vector<int>& numbers, const std::vector<char>& marked) {
+  std::vector<int> kept;
+  for (int number : numbers) {
+    if (marked[static_cast<std::size_t>(number)]) continue;
+    kept.push_back(number -
+                   static_cast<int>(std::count(marked.begin(), marked.begin() + number, 1)));
+  }
+  numbers = std::move(kept);
+}
+
 }  // namespace
 
 void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double tolerance_mm) {
@@ -63,7 +104,7 @@ void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double to
 }
 
 std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfInterest& body,
-                                            double snap_mm) {
+                                            const std::string& name, double snap_mm) {
   constexpr double kOnBorder = 1e-9;  // mm
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < pairs.moving.size(); ++i) {
@@ -73,13 +114,38 @@ std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfI
     const double distance = (border - q).norm();
     if (distance < kOnBorder) continue;
     const std::string what = message(name_of(pairs, i), ": the moving point ", place(q), " lies ",
-                                     fixed_text(distance), " mm outside the moving image's body");
+                                     fixed_text(distance), " mm outside ", name);
     if (distance > snap_mm) {
       throw InvalidInput(what + "; correct it or leave the pair out.");
     }
     warnings.push_back(what + "; it was moved to the border.");
     q = border;
   }
+  return warnings;
+}
+
+std::vector<std::string> leave_out_contour_pairs_at_others(Landmarks<2>& pairs,
+                                                           std::vector<int>& contour,
+                                                           double near_mm) {
+  std::vector<std::string> warnings;
+  std::vector<char> on_contour(pairs.fixed.size(), 0), left_out(pairs.fixed.size(), 0);
+  for (int c : contour) on_contour[static_cast<std::size_t>(c)] = 1;
+  for (int number : contour) {
+    const auto c = static_cast<std::size_t>(number);
+    const auto at = interior_pair_at(pairs, c, on_contour, near_mm);
+    if (!at) continue;
+    left_out[c] = 1;
+    warnings.push_back(message(name_of(pairs, at->pair), " lies ", fixed_text(at->distance),
+                               " mm from ", name_of(pairs, c), " in the ", at->image,
+                               " image; the latter, found by arc length, was left out."));
+  }
+  renumber(contour, left_out);
+  erase_marked(pairs.fixed, left_out);
+  erase_marked(pairs.moving, left_out);
+  erase_marked(pairs.names, left_out);
+  erase_marked(pairs.sigma_mm, left_out);
+  erase_marked(pairs.fixed_angle, left_out);
+  erase_marked(pairs.moving_angle, left_out);
   return warnings;
 }
 

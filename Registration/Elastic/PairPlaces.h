@@ -16,10 +16,21 @@ namespace crease {
 void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double tolerance_mm);
 
 /// Moves moving points that lie outside the moving image's body, but within `snap_mm` of it, onto its border.
+/// @param name  what messages call the body.
 /// @return a warning for each.
 /// @throws InvalidInput naming the pair and its distance when it lies farther out.
 std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfInterest& body,
+                                            const std::string& name = "the moving image's body",
                                             double snap_mm = 2);
+
+/// Leaves out the contour pairs that an interior pair lies on, in either image: what was found by arc length
+/// yields to what somebody has seen, for the two would tear the tissue between them.
+/// @param contour  numbers of the contour pairs; changed to match.
+/// @param near_mm  how near is on it.
+/// @return a warning for each.
+std::vector<std::string> leave_out_contour_pairs_at_others(Landmarks<2>& pairs,
+                                                           std::vector<int>& contour,
+                                                           double near_mm = 2);
 
 /// Warnings of pairs whose displacement is unlike the median of their five neighbours' by more than a share
 /// of the body's width.

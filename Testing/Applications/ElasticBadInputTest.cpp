@@ -4,6 +4,11 @@
 namespace crease {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
 class ElasticBadInput : public testing::ElasticFixture {
  protected:
   std::string pairs(const std::string& rows) const {
@@ -36,7 +41,10 @@ TEST_F(ElasticBadInput, MaterialsThatCannotBe) {
   expect_refused(run({"--poisson", "0.6"}), 2, {"--poisson", "0.6"});
   expect_refused(run({"--young", "-3"}), 2, {"--young", "-3"});
   expect_refused(run({"--poisson", "0.4995", "--plane", "strain"}), 2, {"--poisson"});
-  expect_refused(run({"--regions", file("labels.mha"), "--young", "7=1000"}), 3, {"7"});
+  expect_refused(run({"--poisson", "0.3,1=0.6"}), 2, {"region 1", "0.6", "(-1, 0.5)"});
+  expect_refused(run({"--young", "0"}), 2, {"E = 0", "not a positive number"});
+  expect_refused(run({"--regions", file("labels.mha"), "--young", "7=1000"}), 3,
+                 {"region 7", "the regions 0 and 1 only"});
 }
 
 TEST_F(ElasticBadInput, PairsThatCannotBeMet) {
@@ -67,12 +75,32 @@ TEST_F(ElasticBadInput, NoEquilibriumWritesTheLastState) {
                                     "30,30,58,58\n31,29,2,2\n"),
                               "--steps", "1"});
   EXPECT_EQ(run.code, 5) << run.err;
+  EXPECT_THAT(run.err,
+              AllOf(StartsWith("crease elastic: no elastic equilibrium beyond load fraction 0."),
+                    ContainsRegex("(at|near) \\([0-9.]+, [0-9.]+\\) mm"),
+                    HasSubstr("More pairs there, plane stress or neo-Hookean"),
+                    HasSubstr("last equilibrium on the way")));
+  EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
   const auto result = testing::read_result(output());
   EXPECT_EQ(result["status"], "not_converged");
   EXPECT_EQ(result["equilibrium"], false);
   EXPECT_LT(result["load_fraction"], 1);
+  EXPECT_THAT(result["warnings"].dump(), HasSubstr("no elastic equilibrium"));
   EXPECT_TRUE(result["refinement"].is_null());
   EXPECT_TRUE(std::filesystem::exists(folder / "out/transform.json"));
+}
+
+// The images weigh so much that the damped iteration diverges, less and then more than halving can mend.
+TEST_F(ElasticBadInput, DampedStepsAreHalvedOrGivenUp) {
+  const auto damped = [&](const char* alpha) {
+    return run({"--refinement", "damped", "--damped-step", "1", "--levels", "1", "--smoothing", "1",
+                "--alpha-relative", alpha});
+  };
+  const auto halved = result_of(damped("0.1"));
+  EXPECT_GT(halved["refinement"][0]["halvings"], 0);
+  EXPECT_THAT(halved["warnings"].dump(),
+              AllOf(HasSubstr("J grew with a damped step of 1"), HasSubstr("lowered to")));
+  expect_refused(damped("1e4"), 5, {"halved 10 times", "lower the weight of the images"});
 }
 
 }  // namespace

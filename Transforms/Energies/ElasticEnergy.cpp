@@ -22,6 +22,17 @@ int quadrature_degree(const SplineBasis<Dim>& basis, const ElasticMaterial& mate
   return polynomial ? quartic : quartic + kNeoHookeanDegrees;
 }
 
+template <int Dim>
+std::vector<GradientPatch<Dim>> patches_of(const SplineBasis<Dim>& basis,
+                                           const ElasticMaterial& material,
+                                           const ElasticOptions<Dim>& options) {
+  if (options.quadrature == ElasticQuadrature::kCheap) {
+    return gradient_patches<Dim>(cheap_elements(basis), /*keep_points=*/true);
+  }
+  return gradient_patches<Dim>(basis, quadrature_degree(basis, material, options), nullptr, nullptr,
+                               /*keep_points=*/true);
+}
+
 /// "0, 1 and 4".
 std::string listed(const std::set<int>& numbers) {
   std::ostringstream text;
@@ -85,9 +96,7 @@ ElasticEnergy<Dim>::ElasticEnergy(const SplineBasis<Dim>& basis, const ElasticMa
     material_.plane = PlaneState::kStrain;  // its parameters are those of space
   check_material(material_);
   if (!affine.finite()) throw InvalidInput("ElasticEnergy: the affine part is not finite.");
-  set_materials(gradient_patches<Dim>(basis, quadrature_degree(basis, material_, options), nullptr,
-                                      nullptr, /*keep_points=*/true),
-                options);
+  set_materials(patches_of(basis, material_, options), options);
   set_slots(basis);
 }
 
@@ -227,6 +236,21 @@ void ElasticEnergy<Dim>::add_patch_hessian(std::size_t p, const ElasticSums<Dim>
   }
 }
 
+template <int Dim>
+double relative_tangent_difference(const ElasticEnergy<Dim>& a, const ElasticEnergy<Dim>& b) {
+  const auto at_rest = [](const ElasticEnergy<Dim>& energy) {
+    BlockHessian<Dim> hessian(energy.pattern());
+    const auto rest = ControlPoints<Dim>::Zero(Dim, energy.pattern()->size());
+    energy.evaluate(rest, 1, nullptr, &hessian, ElasticTangent::kExact, nullptr);
+    const Eigen::SparseMatrix<double> lower = hessian.to_sparse();
+    return Eigen::SparseMatrix<double>(lower.template selfadjointView<Eigen::Lower>());
+  };
+  const Eigen::SparseMatrix<double> expected = at_rest(b);
+  return (at_rest(a) - expected).norm() / expected.norm();
+}
+
+template double relative_tangent_difference<2>(const ElasticEnergy<2>&, const ElasticEnergy<2>&);
+template double relative_tangent_difference<3>(const ElasticEnergy<3>&, const ElasticEnergy<3>&);
 template class ElasticEnergy<2>;
 template class ElasticEnergy<3>;
 

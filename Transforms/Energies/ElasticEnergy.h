@@ -6,6 +6,7 @@
 
 #include "Transforms/AffineMap.h"
 #include "Transforms/Energies/ElasticPatch.h"
+#include "Transforms/Energies/ElasticQuadrature.h"
 #include "Transforms/Energies/Energy.h"
 
 namespace crease {
@@ -15,11 +16,12 @@ template <int Dim>
 struct ElasticOptions {
   /// What evaluate() gives.
   ElasticTangent tangent = ElasticTangent::kSemidefinite;
-  /// Degree of the quadrature; negative: 4 (n - 1) for St. Venant-Kirchhoff, which is exact, and two more for
+  ElasticQuadrature quadrature = ElasticQuadrature::kCells;
+  /// Degree of the quadrature in cells; negative: 4 (n - 1) for St. Venant-Kirchhoff, which is exact, and two more for
   /// neo-Hookean tissue, whose energy is no polynomial.
   int quadrature_degree = -1;
   /// The region of a point, for bases whose patches have none; null: that of the patch.
-  std::function<int(const Point<Dim>& x)> region_at;
+  std::function<int(const Point<Dim>& x)> region_at = {};
 };
 
 /// The energy that a nonlinearly elastic body stores when T = A + u deforms it, F = grad T:
@@ -33,7 +35,7 @@ struct ElasticOptions {
 ///     lambda/2 int (ln J)^2 dx  becomes   V lambda/2 (ln m)^2,   m = 1/V int J dx,
 ///
 /// in W, R and K alike; the part with mu stays as it is. Where a neo-Hookean map folds, W is infinite.
-/// Cells are integrated one by one; the bands of creases count like all others.
+/// Cells are integrated one by one (unless the quadrature is cheap); the bands of creases count like all others.
 ///
 /// Source: dissertation, (4.1) to (4.6); mean dilatation: J. C. Nagtegaal, D. M. Parks, J. R. Rice, "On
 /// Numerically Accurate Finite Element Solutions in the Fully Plastic Range", Comput. Methods Appl. Mech.
@@ -89,6 +91,15 @@ class ElasticEnergy final : public Energy<Dim> {
   double largest_stiffness_ = 0, measure_ = 0;
 };
 
+/// |K_a - K_b| / |K_b| in the norm of Frobenius, tangents at rest of two energies on one basis: what a
+/// quadrature is worth.
+template <int Dim>
+double relative_tangent_difference(const ElasticEnergy<Dim>& a, const ElasticEnergy<Dim>& b);
+
+extern template double relative_tangent_difference<2>(const ElasticEnergy<2>&,
+                                                      const ElasticEnergy<2>&);
+extern template double relative_tangent_difference<3>(const ElasticEnergy<3>&,
+                                                      const ElasticEnergy<3>&);
 extern template class ElasticEnergy<2>;
 extern template class ElasticEnergy<3>;
 

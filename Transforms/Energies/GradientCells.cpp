@@ -107,6 +107,15 @@ std::vector<GradientPatch<Dim>> gradient_patches(
 }
 
 template <int Dim>
+std::vector<GradientPatch<Dim>> gradient_patches(
+    const std::vector<QuadratureElement<Dim>>& elements, bool keep_points) {
+  std::vector<GradientPatch<Dim>> patches;
+  const PointWeights<Dim> everywhere;
+  PatchMaker<Dim>(everywhere, keep_points).add(elements, patches);
+  return patches;
+}
+
+template <int Dim>
 void PatchSums<Dim>::resize(const GradientPatch<Dim>& patch, bool with_gradient,
                             bool with_hessian) {
   const auto m = std::ssize(patch.control_points);
@@ -143,6 +152,8 @@ void add_hessian(const GradientPatch<Dim>& patch, const PatchSums<Dim>& sums, do
   template std::vector<GradientPatch<Dim>> gradient_patches(const SplineBasis<Dim>&, int,         \
                                                             const std::function<bool(int, int)>&, \
                                                             const PointWeights<Dim>&, bool);      \
+  template std::vector<GradientPatch<Dim>> gradient_patches(                                      \
+      const std::vector<QuadratureElement<Dim>>&, bool);                                          \
   template struct PatchSums<Dim>;                                                                 \
   template void add_gradient(const GradientPatch<Dim>&, const PatchSums<Dim>&, double,            \
                              ControlPoints<Dim>&);                                                \

@@ -45,6 +45,11 @@ std::vector<GradientPatch<Dim>> gradient_patches(
     const std::function<bool(int region, int patch)>& wanted, const PointWeights<Dim>& weights,
     bool keep_points = false);
 
+/// The same of elements of another quadrature, patch by patch.
+template <int Dim>
+std::vector<GradientPatch<Dim>> gradient_patches(
+    const std::vector<QuadratureElement<Dim>>& elements, bool keep_points);
+
 /// What one patch adds to an energy and its derivatives, by its own control points.
 template <int Dim>
 struct PatchSums {

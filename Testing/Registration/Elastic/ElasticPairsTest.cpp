@@ -3,14 +3,16 @@
 #include <gmock/gmock.h>
 
 #include "Testing/Registration/Elastic/ElasticBodies.h"
+#include "Testing/Transforms/SampleSplines.h"
 #include "Transforms/Domains/StructuredTriangulation.h"
 
 namespace crease {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 ElasticDeformation good() { return testing::moderate_load(18); }
@@ -18,6 +20,18 @@ ElasticDeformation good() { return testing::moderate_load(18); }
 void expect_refused(const ElasticDeformation& deformation, const std::string& text) {
   EXPECT_THAT([&] { deform_elastically(deformation, {.steps = 1}); },
               ThrowsMessage<InvalidInput>(HasSubstr(text)));
+}
+
+/// Pairs crowded into a few millimetres round (30, 0), each with a displacement of its own.
+ElasticDeformation crowded(int count) {
+  auto deformation = good();
+  testing::Numbers numbers(4);
+  for (int n = 0; n < count; ++n) {
+    const Point<2> p(30 + 3 * numbers(), 3 * numbers());
+    deformation.pairs.fixed.push_back(p);
+    deformation.pairs.moving.push_back(p + Vector<2>(numbers(), numbers()));
+  }
+  return deformation;
 }
 
 /// Two squares with a gap between them.
@@ -124,7 +138,16 @@ TEST(ElasticPairs, RefuseContradictions) {
   auto deformation = good();
   deformation.pairs.fixed.emplace_back(20, 0);
   deformation.pairs.moving.emplace_back(25, 3);
-  expect_refused(deformation, "share the fixed point");
+  expect_refused(deformation, "pairs 15 and 18 share the fixed point");
+}
+
+// In the words of elastic bodies: what `crease register` would advise is not to be had.
+TEST(ElasticPairs, RefuseMoreThanTheTrianglesCanMeet) {
+  EXPECT_THAT([&] { deform_elastically(crowded(40), {.steps = 1}); },
+              ThrowsMessage<InvalidInput>(
+                  AllOf(HasSubstr("the exact pairs contradict each other: pair "),
+                        HasSubstr("delete some of them"), HasSubstr("--mesh-size"),
+                        Not(HasSubstr("--landmarks")), Not(HasSubstr("landmark")))));
 }
 
 TEST(ElasticPairs, WarnWhereLinearSplinesLock) {

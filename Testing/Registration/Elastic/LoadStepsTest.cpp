@@ -11,6 +11,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::moderate_load;
+using ::testing::Not;
 
 double largest_difference(const LoadStepResult& a, const LoadStepResult& b) {
   return (a.control_points - b.control_points).cwiseAbs().maxCoeff();
@@ -26,6 +27,23 @@ double pair_error(const ElasticDeformation& deformation, const LoadStepResult& r
     error = std::max(error, (transform.map(p) - target).norm());
   }
   return error;
+}
+
+/// A column of 10 x 1 mm, clamped at both ends, buckles under 4 pi^2 / 12 / 100 = 3.3 % of compression. Pushed
+/// straight down it stays straight, for the mesh is symmetric: an equilibrium that a small push would end.
+ElasticDeformation column(double compression) {
+  DomainMesh domain;
+  domain.mesh = structured_triangulation(testing::box(0, 0, 1, 10), 2, 20);
+  ElasticDeformation deformation;
+  deformation.basis = testing::spline_on(domain, {.degree = 2, .collapse_all = true});
+  deformation.material.tissue = {.young = 1, .poisson = 0};
+  for (const double y : {0.0, 10.0}) {
+    for (const double x : {0.0, 0.5, 1.0}) {
+      deformation.pairs.fixed.emplace_back(x, y);
+      deformation.pairs.moving.emplace_back(x, y * (1 - compression));
+    }
+  }
+  return deformation;
 }
 
 }  // namespace
@@ -234,6 +252,32 @@ TEST(LoadSteps, WarnOfAPairThatIsHeldByLargeForces) {
   EXPECT_THAT(result.warnings, Contains(HasSubstr("pair 18 is held by")));
   EXPECT_THAT(deform_elastically(moderate_load(14, 0.3), {.steps = 4}).warnings,
               ::testing::IsEmpty());
+}
+
+TEST(LoadSteps, FlagUnstableEquilibria) {
+  const auto stable = deform_elastically(column(0.025), {.steps = 5});
+  EXPECT_FALSE(stable.unstable);
+  EXPECT_THAT(stable.warnings, Not(Contains(HasSubstr("unstable"))));
+  for (const auto solver : {LinearSolver::kDirect, LinearSolver::kPreconditionedCg}) {
+    const auto straight = deform_elastically(column(0.06), {.steps = 5, .solver = solver});
+    EXPECT_EQ(straight.fraction, 1);
+    EXPECT_LT(straight.steps.back().residual(), 1e-8);
+    EXPECT_TRUE(straight.unstable);
+    EXPECT_THAT(straight.warnings, Contains(HasSubstr("unstable equilibrium at load fraction 1")));
+  }
+  EXPECT_FALSE(deform_elastically(column(0.06), {.steps = 5}).steps.front().unstable);
+  EXPECT_TRUE(deform_elastically(column(0.06), {.steps = 5}).steps.back().unstable);
+}
+
+// Pushed aside a little, it leaves the straight equilibrium for one with less energy.
+TEST(LoadSteps, FindTheStableEquilibriumBesideAnUnstableOne) {
+  const auto straight = deform_elastically(column(0.06), {.steps = 5});
+  auto pushed = column(0.06);
+  pushed.pairs.fixed.emplace_back(0.5, 5);
+  pushed.pairs.moving.emplace_back(1.5, 4.7);
+  const auto bent = deform_elastically(pushed, {.steps = 5});
+  EXPECT_FALSE(bent.unstable);
+  EXPECT_LT(bent.energy, 0.95 * straight.energy);
 }
 
 TEST(LoadSteps, RefuseOptionsOutOfRange) {

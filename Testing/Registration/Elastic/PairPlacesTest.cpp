@@ -62,6 +62,38 @@ TEST(SnapMovingPoints, MovesThoseJustOutsideAndRefusesOthers) {
               ThrowsMessage<InvalidInput>(HasSubstr("pair 9 (nipple)")));
 }
 
+// What somebody has seen outweighs what was found by arc length, in whichever image they meet.
+TEST(ContourPairsAtOthers, AreLeftOut) {
+  auto pairs = shifted_pairs();
+  std::vector<int> contour = {0, 1, 2, 5};
+  EXPECT_THAT(leave_out_contour_pairs_at_others(pairs, contour), IsEmpty());
+  EXPECT_EQ(pairs.size(), 9);
+
+  pairs.names = {"contour 1", "contour 2", "contour 3", "", "", "contour 4", "", "", ""};
+  pairs.fixed[4] = pairs.fixed[1] + Vector<2>(0, 1.9);
+  pairs.fixed[8] = pairs.fixed[2] + Vector<2>(0, 2.1);
+  pairs.moving[6] = pairs.moving[5] + Vector<2>(1, 0);
+  const auto before = pairs;
+  const auto warnings = leave_out_contour_pairs_at_others(pairs, contour);
+  EXPECT_THAT(warnings,
+              ::testing::ElementsAre(
+                  HasSubstr("pair 5 lies 1.90 mm from pair 2 (contour 2) in the fixed image"),
+                  HasSubstr("pair 7 lies 1.00 mm from pair 6 (contour 4) in the moving image")));
+  EXPECT_THAT(contour, ::testing::ElementsAre(0, 1));
+  ASSERT_EQ(pairs.size(), 7);
+  EXPECT_EQ(pairs.names[1], "contour 3");
+  EXPECT_EQ(pairs.fixed[1], before.fixed[2]);
+  EXPECT_EQ(pairs.moving[4], before.moving[6]);
+}
+
+TEST(StrangePairs, DifferByMoreThanThreeTenthsOfTheWidth) {
+  for (const double share : {0.29, 0.31}) {
+    auto pairs = shifted_pairs();
+    pairs.moving[4] += 100 * share * Vector<2>(0.6, -0.8);
+    EXPECT_EQ(strange_pairs(pairs, 100).size(), share > 0.3 ? 1 : 0) << share;
+  }
+}
+
 TEST(StrangePairs, AreThoseUnlikeTheirNeighbours) {
   auto pairs = shifted_pairs();
   EXPECT_THAT(strange_pairs(pairs, 100), IsEmpty());

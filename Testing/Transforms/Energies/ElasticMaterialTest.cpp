@@ -70,6 +70,25 @@ TEST(ElasticMaterial, StressIsTheSlopeOfTheStoredEnergy) {
   }
 }
 
+// St. Venant-Kirchhoff: S_11 = (lambda + 2 mu) (s^2 - 1) / 2 and S_22 = lambda (s^2 - 1) / 2.
+TEST(ElasticMaterial, StressOfALaterallyHeldStretchIsKnown) {
+  ElasticMaterial material;
+  material.tissue = {.young = 3, .poisson = 0.45};
+  for (const auto plane : {PlaneState::kStress, PlaneState::kStrain}) {
+    material.plane = plane;
+    const auto [lambda, mu] = lame_parameters(material.tissue, plane);
+    for (const double s : {0.6, 0.9, 1.3, 2.0}) {
+      Matrix<2> F = Matrix<2>::Identity();
+      F(0, 0) = s;
+      const auto stress = elastic_state<2>(material, 0, F).piola_stress;
+      const double strain = (s * s - 1) / 2, unit = (lambda + 2 * mu) * std::abs(strain);
+      EXPECT_NEAR(stress(0, 0), (lambda + 2 * mu) * strain, 1e-12 * unit);
+      EXPECT_NEAR(stress(1, 1), lambda * strain, 1e-12 * unit);
+      EXPECT_NEAR(stress(0, 1), 0, 1e-12 * unit);
+    }
+  }
+}
+
 TEST(ElasticMaterial, LawsAgreeForSmallStrains) {
   const double small = 1e-5;
   const Matrix<3> F = Matrix<3>::Identity() + small * testing::Numbers(5).columns<3>(3);

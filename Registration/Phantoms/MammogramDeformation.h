@@ -38,7 +38,8 @@ MammogramMotion draw_mammogram_motion(Random random);
 ///
 ///     T(x) = x + (A(x) - x) + sum of waves(x) + (F(x) - x),
 ///
-/// A affine, F a further map, for instance of an elastic body; without one the last part is missing.
+/// A affine, F a further map, for instance of an elastic body. Without one, and where F is not defined
+/// (Transform::in_domain), the last part is missing: F(x) = x at the border of its domain, or T tears there.
 class MammogramDeformation {
  public:
   explicit MammogramDeformation(MammogramMotion motion,

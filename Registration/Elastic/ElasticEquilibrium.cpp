@@ -121,8 +121,13 @@ bool ElasticEquilibrium::search(const Eigen::VectorXd& step) {
 
 std::optional<std::string> ElasticEquilibrium::correct(const SplineBasis<2>& basis,
                                                        LoadStepRecord& record) {
+  // Iterations in a row: St. Venant-Kirchhoff tissue that stays inside out so long comes to rest so.
+  constexpr int kMostFolded = 4;
   record.residuals.push_back(state_.residual);
+  int folded = 0;
   while (state_.residual > options_.tolerance) {
+    folded = state_.least.value > 0 ? 0 : folded + 1;
+    if (folded > kMostFolded) return fold_text();
     if (record.newton_iterations == options_.max_iterations) {
       return message("Newton's method did not converge in ", options_.max_iterations,
                      " iterations; forces are least balanced near ", worst_place(basis));
@@ -146,10 +151,7 @@ std::optional<std::string> ElasticEquilibrium::advance(double share, const Splin
   record = {};
   auto failure = predict(share, record.unstable);
   if (!failure && options_.corrector == LoadCorrector::kNewton) failure = correct(basis, record);
-  if (!failure && !(state_.least.value > 0)) {
-    failure = message("the map folds (det F = ", state_.least.value, ") at ",
-                      place_text(state_.least.place));
-  }
+  if (!failure && !(state_.least.value > 0)) failure = fold_text();
   record.factorizations = num_factorizations() - factorizations;
   if (failure) {
     state_ = before;
@@ -162,6 +164,11 @@ std::optional<std::string> ElasticEquilibrium::advance(double share, const Splin
         state_.reactions.rowwise().norm().maxCoeff(&record.largest_reaction_row);
   }
   return std::nullopt;
+}
+
+std::string ElasticEquilibrium::fold_text() const {
+  return message("the map folds (det F = ", state_.least.value, ") at ",
+                 place_text(state_.least.place));
 }
 
 /// Where the force that no constraint balances is largest.

@@ -20,15 +20,14 @@ std::shared_ptr<const TriangularBSplineBasis<2>> lagrange_basis(const DomainMesh
 
 DomainMesh mesh_of_mammogram(int num_triangles, bool muscle) {
   constexpr double kQuarter = 0.5 * std::numbers::pi;
-  constexpr int kSkinPoints = 4000, kLinePoints = 33;
+  constexpr int kSkinPoints = 4000;
   const double tolerance = 0.3 * 600 / num_triangles;  // falls with the square of the edge length
   Polyline ring = skin_line(-kQuarter, kQuarter, kSkinPoints);
   for (Point<2>& p : ring) p *= kMammogramWidthMm;
   std::vector<FeatureLine> lines(muscle ? 1 : 0);
   for (FeatureLine& line : lines) {
-    for (const Point<2>& p : pectoral_line(0, kLinePoints)) {
-      line.points.push_back(kMammogramWidthMm * p);
-    }
+    line.points = pectoral_line(0, 2);  // straight
+    for (Point<2>& p : line.points) p *= kMammogramWidthMm;
   }
   MeshOptions options;
   options.num_triangles = num_triangles;

@@ -75,12 +75,12 @@ void ElasticEquilibrium::assemble() {
 /// Shifts the tangent by shares of its diagonal until it is positive definite.
 std::optional<Eigen::VectorXd> ElasticEquilibrium::solve(const Eigen::VectorXd& rhs,
                                                          bool& unstable) {
-  constexpr double kFirstShift = 1e-4, kLastShift = 1e2;
+  constexpr int kFirstPower = -4, kLastPower = 2;  // of ten
   unstable = false;
   if (auto y = solver_.solve(rhs, 0)) return y;
   unstable = true;
-  for (double shift = kFirstShift; shift <= kLastShift; shift *= 10) {
-    if (auto y = solver_.solve(rhs, shift)) return y;
+  for (int power = kFirstPower; power <= kLastPower; ++power) {
+    if (auto y = solver_.solve(rhs, std::pow(10.0, power))) return y;
   }
   return std::nullopt;
 }
@@ -122,7 +122,7 @@ bool ElasticEquilibrium::search(const Eigen::VectorXd& step) {
 std::optional<std::string> ElasticEquilibrium::correct(const SplineBasis<2>& basis,
                                                        LoadStepRecord& record) {
   // Iterations in a row: St. Venant-Kirchhoff tissue that stays inside out so long comes to rest so.
-  constexpr int kMostFolded = 4;
+  constexpr int kMostFolded = 6;
   record.residuals.push_back(state_.residual);
   int folded = 0;
   while (state_.residual > options_.tolerance) {

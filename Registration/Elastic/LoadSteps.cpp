@@ -101,12 +101,11 @@ void set_state(const ElasticEquilibrium& body, LoadStepResult& result) {
 }
 
 [[noreturn]] void give_up(const std::string& reason, LoadStepResult result) {
-  throw NoEquilibrium(
-      message(
-          "no elastic equilibrium beyond load fraction ", result.fraction, ": ", reason,
-          ". More pairs there, plane stress or neo-Hookean tissue may help; so may a look at the "
-          "pairs with the largest reactions."),
-      std::move(result));
+  const std::string text = message(
+      "no elastic equilibrium beyond load fraction ", result.fraction, ": ", reason,
+      ". More pairs there, plane stress or neo-Hookean tissue may help; so may a look at the "
+      "pairs with the largest reactions.");
+  throw NoEquilibrium(text, std::move(result));
 }
 
 /// Rows of the pairs' constraints, by their names.

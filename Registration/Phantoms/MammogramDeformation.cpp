@@ -92,7 +92,7 @@ std::pair<Point<2>, Matrix<2>> MammogramDeformation::sample(const Point<2>& x) c
   return {y, jacobian};
 }
 
-Point<2> MammogramDeformation::inverse(const Point<2>& y, Point<2> start) const {
+Point<2> MammogramDeformation::inverse(const Point<2>& y, const Point<2>& start) const {
   constexpr double kTolerance = 4e-12;
   constexpr int kMaxSteps = 200;
   Point<2> x = start;

@@ -53,7 +53,7 @@ class MammogramDeformation {
   /// x <- x + y - T(x).
   /// @param start  a point near x; y itself will do.
   /// @throws SolverError when that is not reached: F folds.
-  Point<2> inverse(const Point<2>& y, Point<2> start) const;
+  Point<2> inverse(const Point<2>& y, const Point<2>& start) const;
   /// Smallest and largest determinant of T's derivative on a grid of 257 x 257 points of the frame.
   std::pair<double, double> determinant_range() const;
 

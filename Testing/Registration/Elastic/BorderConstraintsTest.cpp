@@ -46,7 +46,7 @@ TEST(BorderConstraints, HoldTheBorderWhereItsKnotsAreCollapsed) {
   }
   SplineTransform<2> map(basis);
   map.set_control_points(phi);
-  for (double y = -47; y < 47; y += 3.7) {  // the flat side
+  for (int y = -47; y < 47; y += 3) {  // the flat side
     const Point<2> x(0, y);
     EXPECT_LT((map.map(x) - x - quadratic(x)).norm(), 1e-11);
   }

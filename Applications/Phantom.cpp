@@ -49,7 +49,8 @@ Mammograms differ by gain, gamma and noise as well, and masses, outlines and duc
 outline.csv (skin line), branches.csv (where ducts fork or cross, with the directions of the ducts there in
 radians from x to y) and the same with moving- before the name; feature-lines.csv is the edge of the pectoral
 muscle, labels.mha the muscle; landmarks.csv holds pairs on the skin line, the nipple and forks of ducts;
-phantom.json has nipples and all parameters.
+phantom.json has nipples and all parameters. With --elastic the breast's border moves as smoothly as without, and its
+inside as an elastic body does, with a kink at the muscle's edge.
 
 Example:
   crease phantom spine --seed 7 --output spine

@@ -73,6 +73,7 @@ std::string MammogramCommand::given() const {
   if (view) return "--view";
   if (temporal) return "--temporal";
   if (bilateral) return "--bilateral";
+  if (elastic) return "--elastic";
   if (density) return "--density";
   if (bits) return "--bits";
   if (mass) return "--mass";
@@ -92,6 +93,11 @@ std::vector<Option> options_of(MammogramCommand& c) {
        .target = &c.bilateral,
        .help = "Mammograms: left and right breast; the moving image, and with it the true map, is "
                "mirrored"},
+      {.name = "elastic",
+       .target = &c.elastic,
+       .help = "Mammograms: the motion is that of an elastic body whose pectoral muscle is ten "
+               "times as "
+               "stiff as the breast; without it all tissue moves smoothly"},
       {.name = "density",
        .target = &c.density,
        .placeholder = "D",
@@ -121,6 +127,7 @@ MammogramPhantomOptions phantom_options(const MammogramCommand& command) {
   MammogramPhantomOptions options;
   if (command.view == "cc") options.view = MammogramView::kCc;
   if (command.bilateral) options.pair = MammogramPairKind::kBilateral;
+  options.elastic = command.elastic;
   if (command.density) options.density = *command.density;
   if (command.bits) options.bits = *command.bits;
   if (options.bits != 8 && options.bits != 12 && options.bits != 16) {
@@ -149,6 +156,7 @@ Json mammogram_description(const MammogramPhantom& phantom,
                {"view", options.view == MammogramView::kMlo ? "mlo" : "cc"},
                {"pair", bilateral ? "bilateral" : "temporal"},
                {"moving_mirrored", bilateral},
+               {"motion", options.elastic ? "elastic" : "smooth"},
                {"bits", options.bits},
                {"mass", kMassPlaces[static_cast<int>(options.mass)]},
                {"label", options.label},

@@ -14,7 +14,7 @@ namespace crease {
 /// The options of `crease phantom` that only mammograms have.
 struct MammogramCommand {
   std::optional<std::string> view, mass;
-  bool temporal = false, bilateral = false, no_label = false;
+  bool temporal = false, bilateral = false, elastic = false, no_label = false;
   std::optional<double> density;
   std::optional<int> bits;
 

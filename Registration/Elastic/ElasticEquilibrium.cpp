@@ -9,9 +9,9 @@ namespace crease {
 namespace {
 
 constexpr double kForceFloor = 1e-13;  // times stiffness and size of the body
-/// Shares of its diagonal by which an indefinite tangent is shifted; the last one is beyond any need of a
-/// matrix that is finite.
-constexpr double kFirstShift = 1e-4, kLastShift = 1e12;
+/// Powers of ten: shares of its diagonal by which an indefinite tangent is shifted; the last one is beyond any
+/// need of a matrix that is finite.
+constexpr int kFirstPower = -4, kLastPower = 12;
 constexpr double kLeastUnit = 1e-6;  // of the shift, in units of the mean one
 
 /// Tight enough for Newton's method to go on converging fast.
@@ -86,8 +86,8 @@ std::optional<Eigen::VectorXd> ElasticEquilibrium::solve(const Eigen::VectorXd& 
   const Eigen::VectorXd diagonal = tangent.diagonal();
   const Eigen::VectorXd size = diagonal.cwiseAbs();
   const Eigen::VectorXd unit = size.cwiseMax(kLeastUnit * size.mean());
-  for (double shift = kFirstShift; !y && shift <= kLastShift; shift *= 10) {
-    tangent.diagonal() = diagonal + shift * unit;
+  for (int power = kFirstPower; !y && power <= kLastPower; ++power) {
+    tangent.diagonal() = diagonal + std::pow(10.0, power) * unit;
     solver_.hessian_changed();
     y = solver_.solve(rhs, 0);
   }
@@ -138,8 +138,13 @@ bool ElasticEquilibrium::search(const Eigen::VectorXd& step) {
 
 std::optional<std::string> ElasticEquilibrium::correct(const SplineBasis<2>& basis,
                                                        LoadStepRecord& record) {
+  // Iterations in a row: St. Venant-Kirchhoff tissue that stays inside out so long comes to rest so.
+  constexpr int kMostFolded = 6;
   record.residuals.push_back(state_.residual);
+  int folded = 0;
   while (state_.residual > options_.tolerance) {
+    folded = state_.least.value > 0 ? 0 : folded + 1;
+    if (folded > kMostFolded) return fold_text();
     if (record.newton_iterations == options_.max_iterations) {
       return message("Newton's method did not converge in ", options_.max_iterations,
                      " iterations; forces are least balanced near ", worst_place(basis));
@@ -163,10 +168,7 @@ std::optional<std::string> ElasticEquilibrium::advance(double share, const Splin
   record = {};
   auto failure = predict(share, record.unstable);
   if (!failure && options_.corrector == LoadCorrector::kNewton) failure = correct(basis, record);
-  if (!failure && !(state_.least.value > 0)) {
-    failure = message("the map folds (det F = ", state_.least.value, ") at ",
-                      place_text(state_.least.place));
-  }
+  if (!failure && !(state_.least.value > 0)) failure = fold_text();
   record.factorizations = num_factorizations() - factorizations;
   if (failure) {
     state_ = before;
@@ -179,6 +181,11 @@ std::optional<std::string> ElasticEquilibrium::advance(double share, const Splin
         state_.reactions.rowwise().norm().maxCoeff(&record.largest_reaction_row);
   }
   return std::nullopt;
+}
+
+std::string ElasticEquilibrium::fold_text() const {
+  return message("the map folds (det F = ", state_.least.value, ") at ",
+                 place_text(state_.least.place));
 }
 
 /// Where the force that no constraint balances is largest.

@@ -57,6 +57,7 @@ class ElasticEquilibrium {
   std::optional<std::string> predict(double share, bool& unstable);
   std::optional<std::string> correct(const SplineBasis<2>& basis, LoadStepRecord& record);
   bool search(const Eigen::VectorXd& step);
+  std::string fold_text() const;
   std::string worst_place(const SplineBasis<2>& basis) const;
 
   const ElasticEnergy<2>& energy_;

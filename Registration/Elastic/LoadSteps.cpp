@@ -27,6 +27,7 @@ void check_options(const LoadStepOptions& options) {
           "between 0 and 1");
   require(options.max_halvings >= 0 && options.max_halvings <= 30, "max_halvings",
           options.max_halvings, "between 0 and 30");
+  require(options.max_failures >= 1, "max_failures", options.max_failures, "1 or more");
   require(options.snap_mm >= 0, "snap_mm", options.snap_mm, "0 or more");
 }
 
@@ -181,7 +182,7 @@ LoadStepResult load(const ElasticEnergy<2>& energy, const SplineBasis<2>& basis,
     const double share = sizes.next(result.fraction);
     LoadStepRecord record;
     if (const auto failure = body.advance(share, basis, record)) {
-      if (sizes.failed(share)) continue;
+      if (++result.failures < options.max_failures && sizes.failed(share)) continue;
       judge_state(body, constraints, options, result);
       give_up(*failure, std::move(result));
     }

@@ -38,6 +38,7 @@ struct LoadStepOptions {
   int max_iterations = 15;  ///< of Newton's method, per step
   double tolerance = 1e-8;  ///< of |N^T R|, relative to the norm of all reactions
   int max_halvings = 6;     ///< of a step that fails: down to 1/64 of the first one
+  int max_failures = 40;    ///< steps that fail in all: no crawling towards a fold
   double snap_mm = 2;       ///< pairs outside the domain by no more are moved onto its border
   double suspicious_reaction = 20;  ///< times the median: larger ones are warned of
   NullSpaceKind null_space = NullSpaceKind::kElimination;
@@ -82,6 +83,7 @@ struct LoadStepResult {
   /// Of a quadrature that is not exact: relative_tangent_difference() from one that is.
   std::optional<double> quadrature_error;
   int factorizations = 0;
+  int failures = 0;  ///< steps that were halved
   std::vector<std::string> warnings;
 };
 
@@ -105,8 +107,9 @@ class NoEquilibrium : public SolverError {
 ///     dU = N y + dU0,   (N^T K N) y = -N^T (R + K dU0)
 ///
 /// The corrector ends when |N^T R| is small against the reactions; it searches along dU for a smaller W. A
-/// step that does not converge, or ends with det F <= 0, is halved. Where K is not positive definite it is
-/// shifted (ElasticEquilibrium); whether the last equilibrium is stable is told by its own tangent.
+/// step that does not converge, stays folded (det F <= 0) for some iterations, or ends so, is halved. The work is
+/// bounded: in steps, in iterations per step, and in steps that fail. Where K is not positive definite it is shifted
+/// (ElasticEquilibrium); whether the last equilibrium is stable is told by its own tangent.
 ///
 /// @param constraints  for every coordinate alike (n rows by 2 columns) or coupling them (2 n rows by one).
 /// @param basis        of the energy; tells places.

@@ -84,7 +84,7 @@ std::pair<Point<2>, Matrix<2>> MammogramDeformation::sample(const Point<2>& x) c
       jacobian.row(axis) += wave.amplitude_mm * std::cos(argument) * wave.wave_vector.transpose();
     }
   }
-  if (further_) {
+  if (further_ && further_->in_domain(x)) {
     const auto more = further_->sample(x);
     y += more.point - x;
     jacobian += more.jacobian - Matrix<2>::Identity();
@@ -92,7 +92,7 @@ std::pair<Point<2>, Matrix<2>> MammogramDeformation::sample(const Point<2>& x) c
   return {y, jacobian};
 }
 
-Point<2> MammogramDeformation::inverse(const Point<2>& y, Point<2> start) const {
+Point<2> MammogramDeformation::inverse(const Point<2>& y, const Point<2>& start) const {
   constexpr double kTolerance = 4e-12;
   constexpr int kMaxSteps = 200;
   Point<2> x = start;

@@ -38,7 +38,8 @@ MammogramMotion draw_mammogram_motion(Random random);
 ///
 ///     T(x) = x + (A(x) - x) + sum of waves(x) + (F(x) - x),
 ///
-/// A affine, F a further map, for instance of an elastic body; without one the last part is missing.
+/// A affine, F a further map, for instance of an elastic body. Without one, and where F is not defined
+/// (Transform::in_domain), the last part is missing: F(x) = x at the border of its domain, or T tears there.
 class MammogramDeformation {
  public:
   explicit MammogramDeformation(MammogramMotion motion,
@@ -52,7 +53,7 @@ class MammogramDeformation {
   /// x <- x + y - T(x).
   /// @param start  a point near x; y itself will do.
   /// @throws SolverError when that is not reached: F folds.
-  Point<2> inverse(const Point<2>& y, Point<2> start) const;
+  Point<2> inverse(const Point<2>& y, const Point<2>& start) const;
   /// Smallest and largest determinant of T's derivative on a grid of 257 x 257 points of the frame.
   std::pair<double, double> determinant_range() const;
 

@@ -1,9 +1,13 @@
 #include "Registration/Phantoms/MammogramPhantom.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Registration/Elastic/LoadSteps.h"
+#include "Registration/Phantoms/MammogramBody.h"
 #include "Registration/Phantoms/MammogramFilm.h"
 #include "Registration/Phantoms/MammogramOutline.h"
 #include "Registration/Phantoms/MammogramStreams.h"
@@ -25,6 +29,10 @@ void check(const MammogramPhantomOptions& options) {
   check_range("size", options.size, 128, 4096);
   check_range("density", options.density, 0, 1);
   check_range("noise", options.noise, 0, 0.5);
+  if (options.elastic && options.further) {
+    throw InvalidInput(
+        "mammogram phantom: an elastic body moves by itself; leave out the further map");
+  }
   if (options.bits != 8 && options.bits != 12 && options.bits != 16) {
     throw InvalidInput(
         message("mammogram phantom: ", options.bits, " bits per pixel; choose 8, 12 or 16"));
@@ -43,15 +51,38 @@ struct CheckedMotion {
   std::pair<double, double> determinants;
 };
 
+// A motion of the tissue, and its determinants; those of an elastic body also where it is integrated.
+CheckedMotion checked(const MammogramMotion& motion,
+                      std::shared_ptr<const Transform<2>> further = nullptr) {
+  MammogramDeformation deformation(motion, std::move(further));
+  const auto determinants = deformation.determinant_range();
+  return {std::move(deformation), determinants};
+}
+
+// Nothing if there is no equilibrium.
+std::optional<CheckedMotion> follow(const MammogramBody& body, const MammogramMotion& motion) {
+  try {
+    const auto equilibrium = body.follow(motion);
+    CheckedMotion result = checked(motion, equilibrium.further);
+    double& least = result.determinants.first;
+    least = std::min(least, equilibrium.least_determinant);
+    return result;
+  } catch (const NoEquilibrium&) {
+    return std::nullopt;
+  }
+}
+
 CheckedMotion draw_deformation(const MammogramPhantomOptions& options) {
   constexpr int kMaxHalvings = 10;
   const MammogramMotion drawn =
       draw_mammogram_motion(mammogram_random(options.seed, MammogramStream::kMotion));
+  std::optional<MammogramBody> body;
+  if (options.elastic)
+    body.emplace(MammogramBodyOptions{.muscle = options.view == MammogramView::kMlo});
   for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
-    const MammogramDeformation deformation(drawn.scaled(std::ldexp(1.0, -halvings)),
-                                           options.further);
-    const auto determinants = deformation.determinant_range();
-    if (determinants.first > kSmallestDeterminant) return {deformation, determinants};
+    const MammogramMotion motion = drawn.scaled(std::ldexp(1.0, -halvings));
+    const auto found = body ? follow(*body, motion) : checked(motion, options.further);
+    if (found && found->determinants.first > kSmallestDeterminant) return *found;
   }
   throw InvalidInput(
       message("mammogram phantom: the further map squeezes tissue to a determinant of ",

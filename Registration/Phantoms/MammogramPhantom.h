@@ -32,7 +32,10 @@ struct MammogramPhantomOptions {
   int bits = 12;         ///< 8, 12 or 16 per pixel
   MammogramMassPlace mass = MammogramMassPlace::kNone;
   bool label = true;  ///< two bright rectangles on the film, away from the breast
-  /// A further part of the true map (MammogramDeformation); null: none.
+  /// The motion is that of an elastic body (MammogramBody) whose border moves as drawn; MLO views have a muscle
+  /// ten times as stiff, across whose edge the strain jumps. Else all tissue moves as drawn, which is smooth.
+  bool elastic = false;
+  /// A further part of the true map (MammogramDeformation), unless that is elastic; null: none.
   std::shared_ptr<const Transform<2>> further = nullptr;
 };
 
@@ -70,10 +73,10 @@ struct MammogramPhantom {
 };
 
 /// Makes a phantom. The same options give the same bytes on any number of threads. Where the drawn motion
-/// squeezes tissue to a determinant of 0.4 or less anywhere in the frame, all of it is halved until it does
-/// not.
-/// @throws InvalidInput for an option out of range, naming the range, or when the further map alone squeezes
-/// tissue that much.
+/// squeezes tissue to a determinant of 0.4 or less anywhere in the frame, or leaves an elastic body without an
+/// equilibrium, all of it is halved until it does not, ten times at most.
+/// @throws InvalidInput for an option out of range, naming the range, for a further map of an elastic body, or
+/// when the further map alone squeezes tissue that much.
 MammogramPhantom make_mammogram_phantom(const MammogramPhantomOptions& options = {});
 
 }  // namespace crease

@@ -100,6 +100,31 @@ TEST(PhantomCommand, MammogramsComeWithAllThatIsKnown) {
   EXPECT_GT(phantom["fixed"]["nipple_mm"][0].get<double>(), 100);
 }
 
+TEST(PhantomCommand, MammogramsOfAnElasticBody) {
+  const TemporaryFolder folder;
+  const auto drawn = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"phantom", "mammogram", "--size", "128", "--seed", "2", "--temporal",
+                               "-o", (folder / name).string()});
+    const auto run = run_crease(more);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return nlohmann::json::parse(testing::read_text(folder / name / "phantom.json"));
+  };
+  const auto elastic = drawn("elastic", {"--elastic"}), smooth = drawn("smooth", {});
+  EXPECT_EQ(elastic["motion"], "elastic");
+  EXPECT_EQ(smooth["motion"], "smooth");
+  EXPECT_GT(elastic["parameters"]["determinant_min"].get<double>(), 0.4);
+  for (const char* same : {"fixed.mha", "mask.mha", "branches.csv"}) {
+    EXPECT_EQ(testing::read_text(folder / "elastic" / same),
+              testing::read_text(folder / "smooth" / same))
+        << same;
+  }
+  for (const char* other : {"moving.mha", "truth.mha", "moving-feature-lines.csv"}) {
+    EXPECT_NE(testing::read_text(folder / "elastic" / other),
+              testing::read_text(folder / "smooth" / other))
+        << other;
+  }
+}
+
 TEST(PhantomCommand, MammogramsOfBothBreastsFromAbove) {
   const TemporaryFolder folder;
   const auto run = run_crease({"phantom", "mammogram", "--size", "128", "--bilateral", "--view",
@@ -140,6 +165,7 @@ TEST(PhantomCommand, RefusesMammogramsItCannotDraw) {
   refused({"phantom", "mammogram", "--landmark-noise", "1"}, "--landmark-noise");
   refused({"phantom", "mammogram", "--dimension", "3"}, "--dimension 3");
   refused({"phantom", "bodies", "--view", "cc"}, "--view is for mammograms, not for bodies");
+  refused({"phantom", "blobs", "--elastic"}, "--elastic is for mammograms, not for blobs");
   refused({"phantom", "spine", "--no-label"}, "--no-label is for mammograms");
   EXPECT_FALSE(std::filesystem::exists(output));
 }

@@ -259,6 +259,8 @@ TEST(MammogramPhantom, RefusesBadOptions) {
   squeeze.linear *= 0.5;  // determinant 0.25
   refused({.size = 128, .further = std::make_shared<AffineTransform<2>>(squeeze)},
           "make it milder");
+  refused({.size = 128, .elastic = true, .further = std::make_shared<AffineTransform<2>>(squeeze)},
+          "leave out the further map");
 }
 
 }  // namespace

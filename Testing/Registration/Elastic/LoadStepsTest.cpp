@@ -190,16 +190,21 @@ TEST(LoadSteps, TakeConstraintsOnSingleCoordinates) {
   EXPECT_NEAR(pull, 1.2 * 3 * strain * 2, 1e-9);
 }
 
-TEST(LoadSteps, NameTheLoadAndThePlaceWhereTheyFail) {
+/// Squeezed between two rows of points 30 mm apart, to a width in mm.
+ElasticDeformation squeezed(double width) {
   auto deformation = moderate_load(20);
-  // Squeezed to a quarter between two rows of points.
   deformation.pairs = {};
   for (double y : {-30.0, -10.0, 10.0, 30.0}) {
     deformation.pairs.fixed.emplace_back(5, y);
     deformation.pairs.moving.emplace_back(5, y);
     deformation.pairs.fixed.emplace_back(35, y);
-    deformation.pairs.moving.emplace_back(8, y);
+    deformation.pairs.moving.emplace_back(5 + width, y);
   }
+  return deformation;
+}
+
+TEST(LoadSteps, NameTheLoadAndThePlaceWhereTheyFail) {
+  const auto deformation = squeezed(3);
   try {
     deform_elastically(deformation, {.steps = 10, .max_halvings = 2});
     FAIL() << "an equilibrium was found";
@@ -216,16 +221,21 @@ TEST(LoadSteps, NameTheLoadAndThePlaceWhereTheyFail) {
   }
 }
 
+// However small the steps may become.
+TEST(LoadSteps, GiveUpAfterSoManyFailures) {
+  try {
+    deform_elastically(squeezed(3), {.steps = 10, .max_halvings = 30, .max_failures = 5});
+    FAIL() << "an equilibrium was found";
+  } catch (const NoEquilibrium& failure) {
+    EXPECT_EQ(failure.last_state().failures, 5);
+    EXPECT_GT(failure.last_state().least_determinant.value, 0);
+  }
+  EXPECT_EQ(deform_elastically(moderate_load(20), {.steps = 4}).failures, 0);
+}
+
 // Where St. Venant-Kirchhoff tissue folds neo-Hookean tissue holds.
 TEST(LoadSteps, NeoHookeanTissueBearsMore) {
-  auto deformation = moderate_load(20);
-  deformation.pairs = {};
-  for (double y : {-30.0, -10.0, 10.0, 30.0}) {
-    deformation.pairs.fixed.emplace_back(5, y);
-    deformation.pairs.moving.emplace_back(5, y);
-    deformation.pairs.fixed.emplace_back(35, y);
-    deformation.pairs.moving.emplace_back(17, y);
-  }
+  auto deformation = squeezed(12);
   deformation.material.law = ElasticLaw::kNeoHookean;
   const auto result = deform_elastically(deformation, {.steps = 10});
   EXPECT_EQ(result.fraction, 1);
@@ -285,6 +295,7 @@ TEST(LoadSteps, RefuseOptionsOutOfRange) {
   EXPECT_THROW(deform_elastically(deformation, {.steps = 0}), InvalidInput);
   EXPECT_THROW(deform_elastically(deformation, {.tolerance = 0}), InvalidInput);
   EXPECT_THROW(deform_elastically(deformation, {.max_iterations = 0}), InvalidInput);
+  EXPECT_THROW(deform_elastically(deformation, {.max_failures = 0}), InvalidInput);
   EXPECT_THROW(deform_elastically({}, {}), InvalidInput);
 }
 

@@ -104,10 +104,9 @@ int granted_threads(const fs::path& root) {
   return std::max(1, count);
 }
 
-void return_large_blocks() {
+void return_free_memory() {
 #ifdef __GLIBC__
-  constexpr int kLarge = 8 << 20;  // bytes; left to itself the limit would grow to 32 MiB
-  mallopt(M_MMAP_THRESHOLD, kLarge);
+  malloc_trim(0);
 #endif
 }
 

@@ -11,8 +11,8 @@ namespace crease {
 /// @param root  where /proc and /sys/fs/cgroup are found; another folder for tests.
 int granted_threads(const std::filesystem::path& root = "/");
 
-/// From now on blocks as large as images go back to the system when they are freed, so that they leave no gaps.
-void return_large_blocks();
+/// Gives back to the system what was freed: images of one stage leave gaps that those of the next may not fit.
+void return_free_memory();
 
 /// The largest memory that this process has held, in MB (10^6 bytes).
 double peak_memory_mb();

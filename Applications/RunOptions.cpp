@@ -38,7 +38,6 @@ std::vector<Option> options_of(RunOptions& run) {
 int prepare_process(const RunOptions& run) {
   const int threads = run.threads.value_or(granted_threads());
   set_num_threads(threads);
-  return_large_blocks();
   return threads;
 }
 

@@ -36,6 +36,7 @@ void RunReport::end_stage(const std::string& name) {
            std::max(0.0, std::chrono::duration<double>(now - stage_start_).count() - parts_s_));
   stage_start_ = now;
   parts_s_ = 0;
+  return_free_memory();
 }
 
 void RunReport::add_part(const std::string& name, double seconds) {

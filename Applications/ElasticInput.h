@@ -21,15 +21,15 @@ struct ElasticInput {
   /// From the moving image as registered to the image as given, mm: the identity unless mirrored.
   AffineMap<2> to_given;
   bool mirrored = false;
+  bool nipple_used = false;                                       ///< as a pair
+  int muscle_label = 0;                                           ///< 0: no muscle
   std::optional<MammogramAnatomy> fixed_anatomy, moving_anatomy;  ///< where they are needed
   RegionOfInterest region;                                        ///< the elastic body
   std::optional<RegionOfInterest> moving_region;                  ///< where it is known
   std::vector<FeatureLine> lines;
-  int muscle_label = 0;  ///< 0: no muscle
   std::optional<LabelImage<2>> labels;
-  Landmarks<2> pairs;        ///< moving points in the image as registered
-  std::vector<int> contour;  ///< numbers of those along the skin, in order
-  bool nipple_used = false;
+  Landmarks<2> pairs;                         ///< moving points in the image as registered
+  std::vector<int> contour;                   ///< numbers of those along the skin, in order
   std::vector<std::string> notes;             ///< of the search in the images
   std::optional<DisplacementField<2>> truth;  ///< into the moving image as given
 

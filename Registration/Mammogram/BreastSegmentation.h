@@ -47,8 +47,8 @@ struct BreastSegmentation {
 /// There is no breast where one was expected. Holds what a picture of the grey values needs.
 class NoBreastFound : public InvalidInput {
  public:
-  NoBreastFound(const std::string& what, GreyHistogram grey_values)
-      : InvalidInput(what), histogram(std::move(grey_values)) {}
+  NoBreastFound(const std::string& what, const GreyHistogram& grey_values)
+      : InvalidInput(what), histogram(grey_values) {}
   GreyHistogram histogram;
 };
 

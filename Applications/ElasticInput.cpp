@@ -168,6 +168,7 @@ void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputF
   if (options.num_contour_pairs() == 0) return;
   ContourPairOptions wanted;
   wanted.count = options.num_contour_pairs();
+  wanted.known = input.pairs;
   const ContourPairs found = contour_pairs(*input.fixed_anatomy, *input.moving_anatomy, wanted);
   input.nipple_used = found.nipple_used;
   const int first = input.pairs.size();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Core/Error.h"
+#include "Registration/Elastic/SnapWarnings.h"
 #include "Transforms/Domains/ArcLength.h"
 #include "Transforms/Domains/MeshTopology.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
@@ -91,21 +92,21 @@ std::vector<int> connected_parts(const SplineBasis<2>& basis) {
 
 std::vector<std::string> snap_to_domain(Landmarks<2>& pairs, const SplineBasis<2>& basis,
                                         double snap_mm) {
-  std::vector<std::string> warnings;
+  SnapWarnings warnings("fixed points", "the domain");
   for (std::size_t j = 0; j < pairs.fixed.size(); ++j) {
     Point<2>& p = pairs.fixed[j];
     if (basis.contains(p)) continue;
     const Point<2> nearest = basis.nearest_point(p);
     const double distance = (nearest - p).norm();
+    const std::string point = message("pair ", j + 1, ": the fixed point ", place_text(p));
     if (!(distance <= snap_mm)) {
-      throw InvalidInput(message("pair ", j + 1, ": the fixed point ", place_text(p), " lies ",
-                                 distance, " mm outside the domain; move or delete it."));
+      throw InvalidInput(
+          message(point, " lies ", distance, " mm outside the domain; move or delete it."));
     }
-    warnings.push_back(message("pair ", j + 1, ": the fixed point ", place_text(p), " lay ",
-                               distance, " mm outside the domain and was moved onto its border"));
+    warnings.add(point, distance);
     p = nearest;
   }
-  return warnings;
+  return warnings.list();
 }
 
 std::vector<std::vector<int>> pairs_along_border(const Landmarks<2>& pairs,

@@ -7,6 +7,7 @@
 
 #include "Core/Error.h"
 #include "Core/Quantiles.h"
+#include "Registration/Elastic/SnapWarnings.h"
 #include "Transforms/Domains/ArcLength.h"
 
 namespace crease {
@@ -106,22 +107,22 @@ void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double to
 std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfInterest& body,
                                             const std::string& name, double snap_mm) {
   constexpr double kOnBorder = 1e-9;  // mm
-  std::vector<std::string> warnings;
+  SnapWarnings warnings("moving points", name);
   for (std::size_t i = 0; i < pairs.moving.size(); ++i) {
     Point<2>& q = pairs.moving[i];
     if (body.contains(q)) continue;
     const Point<2> border = nearest_on_rings(body, q);
     const double distance = (border - q).norm();
     if (distance < kOnBorder) continue;
-    const std::string what = message(name_of(pairs, i), ": the moving point ", place(q), " lies ",
-                                     fixed_text(distance), " mm outside ", name);
+    const std::string point = message(name_of(pairs, i), ": the moving point ", place(q));
     if (distance > snap_mm) {
-      throw InvalidInput(what + "; correct it or leave the pair out.");
+      throw InvalidInput(message(point, " lies ", fixed_text(distance), " mm outside ", name,
+                                 "; correct it or leave the pair out."));
     }
-    warnings.push_back(what + "; it was moved to the border.");
+    warnings.add(point, distance);
     q = border;
   }
-  return warnings;
+  return warnings.list();
 }
 
 std::vector<std::string> leave_out_contour_pairs_at_others(Landmarks<2>& pairs,

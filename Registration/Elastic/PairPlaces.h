@@ -17,7 +17,7 @@ void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double to
 
 /// Moves moving points that lie outside the moving image's body, but within `snap_mm` of it, onto its border.
 /// @param name  what messages call the body.
-/// @return a warning for each.
+/// @return a warning for each that lies clearly outside, and one for those that hardly do.
 /// @throws InvalidInput naming the pair and its distance when it lies farther out.
 std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfInterest& body,
                                             const std::string& name = "the moving image's body",

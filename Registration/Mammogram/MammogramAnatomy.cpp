@@ -15,7 +15,7 @@ namespace {
 /// border's points near the skin line's ends are left out.
 Polyline closed_outline(const SkinContour& skin) {
   for (const double gap_mm : {0.0, 2.0, 5.0}) {
-    Polyline outline = skin.points;
+    Polyline outline = skin.outline;
     for (const auto& p : skin.rest) {
       const double to_ends =
           std::min((p - skin.points.front()).norm(), (p - skin.points.back()).norm());
@@ -23,7 +23,7 @@ Polyline closed_outline(const SkinContour& skin) {
     }
     if (!find_self_intersection(outline, true)) return outline;
   }
-  return skin.points;
+  return skin.outline;
 }
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
@@ -104,6 +104,7 @@ MammogramAnatomy mirrored(const MammogramAnatomy& anatomy) {
   cv::flip(opencv_view(anatomy.breast.mask), mask, 1);
   result.breast.side = opposite(anatomy.breast.side);
   reflect(result.skin.points);
+  reflect(result.skin.outline);
   reflect(result.skin.rest);
   reflect(result.region);
   for (double& c : result.skin.curvature) c = -c;

@@ -129,6 +129,8 @@ std::vector<Bump> bumps(const std::vector<double>& values, double usual, double 
   return found;
 }
 
+constexpr int kOutlinePoints = 2;  // for each of the contour's
+
 }  // namespace
 
 SkinContour smooth_contour(const Polyline& points, const SkinContourOptions& options) {
@@ -155,6 +157,10 @@ SkinContour smooth_contour(const Polyline& points, const SkinContourOptions& opt
   for (double& c : contour.curvature) c = std::clamp(c, lowest, highest);
   contour.curvature = blurred(contour.curvature, options.curvature_blur);
   contour.nipple = find_nipple(points, options);
+  contour.outline = equal_arc_points(fit_curve_within(points, options.outline_mm).curve,
+                                     kOutlinePoints * options.num_points);
+  contour.outline.front() = contour.points.front();
+  contour.outline.back() = contour.points.back();
   return contour;
 }
 

@@ -14,6 +14,7 @@ struct SkinContourOptions {
   double frame_margin_mm = 0.4;  ///< border pixels nearer to the frame's edge are not skin
   double smoothing_mm = 0.4;     ///< sigma_c: rms distance of the border pixels from the spline
   int num_points = 512;          ///< at equal arc length
+  double outline_mm = 0.1;       ///< the same as smoothing_mm, of the outline, which keeps the nipple
   double curvature_blur = 2;     ///< Gaussian over the curvature, in points
   double shortest_mm = 60;       ///< shorter contours are refused
   bool force = false;            ///< takes them all the same
@@ -43,6 +44,8 @@ struct SkinContour {
   double rms_mm = 0;           ///< of the border pixels' distances from the spline
   int num_control_points = 0;  ///< of the spline
   std::optional<Nipple> nipple;
+  /// The same line less smoothed, from the same upper to the same lower end: the contour may cut off a nipple.
+  Polyline outline;
   /// The breast's border from the lower end along the frame back to the upper end, mm.
   Polyline rest;
 };

@@ -35,10 +35,10 @@ TEST_F(ElasticPairsCommand, PairsJustOutsideAreMovedOntoTheBorder) {
   const auto result = registered(
       {"--no-refine", "--pairs", pairs(std::string(kShift) + "65,30,62,30\n60,40,65,40\n")});
   EXPECT_THAT(warnings_of(result),
-              AllOf(Contains(AllOf(HasSubstr("pair 6"), HasSubstr("1.5 mm outside"),
+              AllOf(Contains(AllOf(HasSubstr("pair 6"), HasSubstr("1.50 mm outside"),
                                    HasSubstr("moved onto its border"))),
                     Contains(AllOf(HasSubstr("pair 7"), HasSubstr("1.50 mm outside"),
-                                   HasSubstr("moved to the border")))));
+                                   HasSubstr("moved onto its border")))));
 }
 
 TEST_F(ElasticPairsCommand, PairsFartherOutsideAreRefusedInEitherImage) {

@@ -53,8 +53,13 @@ TEST(SnapMovingPoints, MovesThoseJustOutsideAndRefusesOthers) {
   pairs.moving[3] = {-1.5, 50};
   const auto warnings = snap_moving_points(pairs, body());
   ASSERT_EQ(warnings.size(), 1);
-  EXPECT_THAT(warnings[0], HasSubstr("pair 4: the moving point (-1.50, 50.00) mm lies 1.50 mm"));
+  EXPECT_THAT(warnings[0], HasSubstr("pair 4: the moving point (-1.50, 50.00) mm lay 1.50 mm"));
   EXPECT_LT((pairs.moving[3] - Point<2>(0, 50)).norm(), 1e-12);
+  pairs.moving[3] = {-0.3, 50};
+  pairs.moving[6] = {-0.2, 70};
+  EXPECT_THAT(
+      snap_moving_points(pairs, body()),
+      ::testing::ElementsAre(HasSubstr("2 of the moving points lay up to 0.30 mm outside")));
   pairs.names.assign(9, "");
   pairs.names[8] = "nipple";
   pairs.moving[8] = {110, 80};

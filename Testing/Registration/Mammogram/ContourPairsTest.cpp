@@ -50,6 +50,37 @@ TEST(ContourPairs, TheNippleSplitsTheLength) {
                    .nipple_used);
 }
 
+// Known pairs on the contours split them; others say nothing.
+TEST(ContourPairs, PassThroughKnownPairs) {
+  ContourPairOptions options{.count = 11};
+  options.known.fixed = {{40, 1}, {50, 30}, {70, 0}};
+  options.known.moving = {{0, 60}, {0, 70}, {0, 30}};  // the last would fold
+  const ContourPairs pairs = contour_pairs(kStraight, kCorner, {}, {}, options);
+  EXPECT_EQ(pairs.num_anchors, 1);
+  ASSERT_EQ(pairs.landmarks.size(), 11);
+  for (std::size_t k = 0; k < 11; ++k) {  // the number of the knot is 3.5: shares of 0.4 and 0.3
+    const Point<2>&p = pairs.landmarks.fixed[k], &q = pairs.landmarks.moving[k];
+    const double along = q.y() < 120 ? q.y() : 120 + q.x();
+    const double expected = p.x() < 40 ? 1.5 * p.x() : 60 + (p.x() - 40) / 60 * 140;
+    EXPECT_NEAR(along, expected, 1e-9) << k;
+  }
+}
+
+// The film may cut two contours at different places: near known pairs lengths count, not shares.
+TEST(ContourPairs, GoOnEquallyFarBeyondKnownPairsNearTheEnds) {
+  const Polyline cut = {{0, 0}, {0, 90}};
+  ContourPairOptions options{.count = 21};
+  options.known.fixed = {{10, 0}, {90, 0}};
+  options.known.moving = {{0, 5}, {0, 85}};
+  const ContourPairs pairs = contour_pairs(kStraight, cut, {}, {}, options);
+  EXPECT_EQ(pairs.num_anchors, 2);
+  EXPECT_LT(pairs.landmarks.size(), 21);
+  EXPECT_GT(pairs.landmarks.size(), 17);
+  for (std::size_t k = 0; k < pairs.landmarks.fixed.size(); ++k) {
+    EXPECT_NEAR(pairs.landmarks.moving[k].y(), pairs.landmarks.fixed[k].x() - 5, 1e-9) << k;
+  }
+}
+
 TEST(ContourPairs, FollowAStretch) {
   const ContourPairs pairs = contour_pairs(kStraight, kStraight, {}, {},
                                            {.count = 3, .stretch = [](double t) { return t * t; }});

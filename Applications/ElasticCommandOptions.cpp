@@ -51,6 +51,13 @@ std::vector<Option> input_options(ElasticCommandOptions& o) {
        .help = "Pairs at equal arc length along both skin lines (29, or none beside --pairs)",
        .minimum = 0,
        .maximum = 1000},
+      {.name = "pectoral-pairs",
+       .target = &o.pectoral_pairs,
+       .placeholder = "N",
+       .help = "Pairs on the edge of the pectoral muscle, equally far from the skin in both images "
+               "(4 beside pairs along the skin)",
+       .minimum = 0,
+       .maximum = 1000},
       {.name = "spacing",
        .target = &o.spacing,
        .placeholder = "X,Y",
@@ -243,6 +250,9 @@ void check(const ElasticCommandOptions& o) {
   }
   if (o.pairs.empty() && o.num_contour_pairs() == 0) {
     throw UsageError("--contour-pairs 0 leaves nothing to deform by; give --pairs FILE.");
+  }
+  if (o.num_pectoral_pairs() > 0 && o.pectoral_source() == "none") {
+    throw UsageError("--pectoral-pairs needs the muscle: give --pectoral auto or --pectoral FILE.");
   }
   if (o.num_contour_pairs() > 0 && o.num_contour_pairs() < 3) {
     throw UsageError(message("--contour-pairs ", o.num_contour_pairs(), ": take 3 or more."));

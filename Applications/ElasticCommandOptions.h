@@ -16,7 +16,7 @@ struct ElasticCommandOptions {
   std::string fixed, moving, output;
   std::vector<double> spacing;
   std::vector<std::string> pairs;
-  std::optional<int> contour_pairs;
+  std::optional<int> contour_pairs, pectoral_pairs;
   std::string roi = "auto";
   std::optional<std::string> regions;
   std::optional<std::string> pectoral;
@@ -50,9 +50,14 @@ struct ElasticCommandOptions {
   }
   /// Pairs along the skin line, found in the images.
   int num_contour_pairs() const { return contour_pairs.value_or(pairs.empty() ? 29 : 0); }
+  /// Pairs along the edge of the pectoral muscle, where it is found in both.
+  int num_pectoral_pairs() const {
+    return pectoral_pairs.value_or(num_contour_pairs() > 0 && pectoral_source() != "none" ? 4 : 0);
+  }
   /// Whether the images are looked at as mammograms.
   bool needs_anatomy() const {
-    return roi == "auto" || pectoral_source() != "none" || num_contour_pairs() > 0;
+    return roi == "auto" || pectoral_source() != "none" || num_contour_pairs() > 0 ||
+           num_pectoral_pairs() > 0;
   }
   /// Of equal steps.
   int num_steps() const { return std::stoi(steps); }

@@ -39,6 +39,7 @@ Json pairs_json(const ElasticStory& story) {
   Json json = {{"count", pairs.size()},
                {"given", story.input.num_given_pairs()},
                {"contour", story.input.num_contour_pairs()},
+               {"pectoral", story.input.num_pectoral_pairs},
                {"nipple", story.input.nipple_used},
                {"after_pairs", errors(*registration.deformation)}};
   json["after_refinement"] = registration.refinement ? errors(*registration.transform) : Json();
@@ -50,7 +51,8 @@ Json material_json(const ElasticStory& story) {
   const auto tissue = [](const ElasticTissue& t) {
     return Json{{"young", t.young}, {"poisson", t.poisson}};
   };
-  Json json = {{"law", story.options.material.law},
+  const bool neo_hookean = material.law == ElasticLaw::kNeoHookean;
+  Json json = {{"law", neo_hookean ? "neo-hookean" : "st-venant-kirchhoff"},
                {"plane", story.options.material.plane},
                {"breast", tissue(material.tissue)},
                {"regions", Json::object()}};
@@ -108,13 +110,16 @@ Json errors_json(const TargetErrors& errors) {
 
 std::string pairs_text(const ElasticInput& input) {
   const int contour = input.num_contour_pairs(), given = input.num_given_pairs();
-  std::string text = fmt::format("{}", contour + given);
+  std::vector<std::string> parts;
   if (contour > 0) {
-    text += fmt::format(": {} along the skin by arc length{}", contour,
-                        input.nipple_used ? ", split at the nipple" : "");
+    parts.push_back(fmt::format("{} along the skin by arc length{}", contour,
+                                input.nipple_used ? ", split at the nipple" : ""));
   }
-  if (given > 0) text += fmt::format("{} {} given", contour > 0 ? "," : ":", given);
-  return text;
+  if (input.num_pectoral_pairs > 0) {
+    parts.push_back(fmt::format("{} along the muscle", input.num_pectoral_pairs));
+  }
+  if (given > 0) parts.push_back(fmt::format("{} given", given));
+  return fmt::format("{}: {}", input.pairs.size(), fmt::join(parts, ", "));
 }
 
 std::string breast_text(const ElasticInput& input) {

@@ -11,6 +11,7 @@
 #include "Registration/Elastic/PairPlaces.h"
 #include "Registration/Mammogram/ContourPairs.h"
 #include "Registration/Mammogram/GreyScale.h"
+#include "Registration/Mammogram/PectoralPairs.h"
 #include "Transforms/Domains/FeatureLineFile.h"
 
 namespace crease {
@@ -153,35 +154,52 @@ std::vector<std::string> snap_to_moving_body(ElasticInput& input) {
   return snap_moving_points(input.pairs, RegionOfInterest(std::move(rings)));
 }
 
-/// Given pairs first, then those along the skin.
-void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputFiles& files,
-               RunReport& report) {
-  if (!options.pairs.empty()) {
-    input.pairs = files.landmarks<2>("pairs", options.pairs);
-    report.add_warnings(snap_to_moving_body(input));
-    // A reflection is its own inverse.
-    for (Point<2>& q : input.pairs.moving) q = input.to_given(q);
-    input.pairs.sigma_mm.clear();     // all are met exactly
-    input.pairs.fixed_angle.clear();  // directions are not used
-    input.pairs.moving_angle.clear();
-  }
-  if (options.num_contour_pairs() == 0) return;
-  ContourPairOptions wanted;
-  wanted.count = options.num_contour_pairs();
-  wanted.known = input.pairs;
-  const ContourPairs found = contour_pairs(*input.fixed_anatomy, *input.moving_anatomy, wanted);
-  input.nipple_used = found.nipple_used;
+void read_given_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputFiles& files,
+                      RunReport& report) {
+  if (options.pairs.empty()) return;
+  input.pairs = files.landmarks<2>("pairs", options.pairs);
+  report.add_warnings(snap_to_moving_body(input));
+  // A reflection is its own inverse.
+  for (Point<2>& q : input.pairs.moving) q = input.to_given(q);
+  input.pairs.sigma_mm.clear();     // all are met exactly
+  input.pairs.fixed_angle.clear();  // directions are not used
+  input.pairs.moving_angle.clear();
+}
+
+/// Adds pairs found in the images, but for those that others lie on.
+/// @return the numbers of those added.
+std::vector<int> append_found(const Landmarks<2>& found, ElasticInput& input, RunReport& report) {
   const int first = input.pairs.size();
   input.pairs.names.resize(static_cast<std::size_t>(first));
   const auto append = [](auto& to, const auto& more) {
     to.insert(to.end(), more.begin(), more.end());
   };
-  append(input.pairs.fixed, found.landmarks.fixed);
-  append(input.pairs.moving, found.landmarks.moving);
-  append(input.pairs.names, found.landmarks.names);
-  input.contour.resize(found.landmarks.fixed.size());
-  std::iota(input.contour.begin(), input.contour.end(), first);
-  report.add_warnings(leave_out_contour_pairs_at_others(input.pairs, input.contour));
+  append(input.pairs.fixed, found.fixed);
+  append(input.pairs.moving, found.moving);
+  append(input.pairs.names, found.names);
+  std::vector<int> numbers(found.fixed.size());
+  std::iota(numbers.begin(), numbers.end(), first);
+  report.add_warnings(leave_out_contour_pairs_at_others(input.pairs, numbers));
+  return numbers;
+}
+
+/// Given pairs first, then those along the skin, then those along the muscle.
+void set_pairs(const ElasticCommandOptions& options, ElasticInput& input, InputFiles& files,
+               RunReport& report) {
+  read_given_pairs(options, input, files, report);
+  if (options.num_contour_pairs() > 0) {
+    ContourPairOptions wanted;
+    wanted.count = options.num_contour_pairs();
+    wanted.known = input.pairs;
+    const ContourPairs found = contour_pairs(*input.fixed_anatomy, *input.moving_anatomy, wanted);
+    input.nipple_used = found.nipple_used;
+    input.contour = append_found(found.landmarks, input, report);
+  }
+  if (options.num_pectoral_pairs() > 0) {
+    const Landmarks<2> found =
+        pectoral_pairs(*input.fixed_anatomy, *input.moving_anatomy, options.num_pectoral_pairs());
+    input.num_pectoral_pairs = static_cast<int>(append_found(found, input, report).size());
+  }
 }
 
 }  // namespace

@@ -28,14 +28,15 @@ struct ElasticInput {
   std::optional<RegionOfInterest> moving_region;                  ///< where it is known
   std::vector<FeatureLine> lines;
   std::optional<LabelImage<2>> labels;
-  Landmarks<2> pairs;                         ///< moving points in the image as registered
+  Landmarks<2> pairs;  ///< moving points in the image as registered
+  int num_pectoral_pairs = 0;
   std::vector<int> contour;                   ///< numbers of those along the skin, in order
   std::vector<std::string> notes;             ///< of the search in the images
   std::optional<DisplacementField<2>> truth;  ///< into the moving image as given
 
   bool has_muscle() const { return muscle_label > 0; }
   int num_contour_pairs() const { return static_cast<int>(contour.size()); }
-  int num_given_pairs() const { return pairs.size() - num_contour_pairs(); }
+  int num_given_pairs() const { return pairs.size() - num_contour_pairs() - num_pectoral_pairs; }
   /// A muscle of which the options say nothing is ten times as stiff as the breast.
   ElasticBody body(const MaterialOptions& material) const;
 };

@@ -1,6 +1,7 @@
 #include "Applications/ElasticRun.h"
 
 #include "Applications/MetricChoice.h"
+#include "Core/Error.h"
 #include "Registration/Elastic/PairPlaces.h"
 #include "Transforms/AffineTransform.h"
 #include "Transforms/CompositeTransform.h"
@@ -8,7 +9,7 @@
 namespace crease {
 namespace {
 
-constexpr double kQuietSnap = 0.5;  // mm that a smooth contour may run outside the mesh
+constexpr double kQuietSnap = 1.5;  // mm that a smooth contour may run outside the mesh
 
 ElasticDomainOptions domain_options(const ElasticCommandOptions& o) {
   ElasticDomainOptions options;
@@ -45,6 +46,11 @@ ElasticRegistrationOptions registration_options(const ElasticCommandOptions& o) 
   return options;
 }
 
+/// Where nobody asked for a law, and no pairs that must be met were given.
+bool may_choose_law(const ElasticCommandOptions& options) {
+  return !options.material.law && options.pairs.empty();
+}
+
 /// The transform as the moving image is given.
 std::shared_ptr<const Transform<2>> given_transform(const ElasticInput& input,
                                                     const ElasticRegistrationResult& found) {
@@ -61,21 +67,34 @@ std::shared_ptr<const Transform<2>> given_transform(const ElasticInput& input,
 ElasticOutcome run_elastic(const ElasticCommandOptions& options, const ElasticInput& input,
                            RunReport& report, ProgressReporter& progress) {
   progress.report({.stage = "domain"});
-  const ElasticBody body = input.body(options.material);
+  ElasticBody body = input.body(options.material);
   ElasticOutcome outcome;
   outcome.material = body.material;
   outcome.domain = make_elastic_domain(body, domain_options(options));
   report.add_warnings(outcome.domain.warnings);
   outcome.pairs = input.pairs;
-  if (!input.contour.empty()) place_on_border(outcome.pairs, *outcome.domain.basis, kQuietSnap);
+  place_on_border(outcome.pairs, input.contour, *outcome.domain.basis, kQuietSnap);
   report.add_warnings(
       strange_pairs(outcome.pairs, outcome.domain.basis->bounds().size().minCoeff()));
   report.end_stage("domain");
-  outcome.registration = register_elastically(input.fixed.image, input.moving.image, nullptr, body,
-                                              outcome.domain, outcome.pairs, input.contour,
-                                              registration_options(options), progress.callback());
-  for (const auto& [stage, seconds] : outcome.registration.timings_s) {
-    report.add_part(stage, seconds);
+  const auto run = [&] {
+    outcome.registration = register_elastically(input.fixed.image, input.moving.image, nullptr,
+                                                body, outcome.domain, outcome.pairs, input.contour,
+                                                registration_options(options), progress.callback());
+    for (const auto& [stage, seconds] : outcome.registration.timings_s) {
+      report.add_part(stage, seconds);
+    }
+  };
+  run();
+  if (!outcome.registration.failure.empty() && may_choose_law(options)) {
+    report.add_warning(
+        message("St. Venant-Kirchhoff tissue cannot follow the pairs found in the images beyond "
+                "load fraction ",
+                outcome.registration.load.fraction,
+                "; neo-Hookean tissue, which cannot be turned inside out, was taken instead "
+                "(--material)."));
+    outcome.material.law = body.material.law = ElasticLaw::kNeoHookean;
+    run();
   }
   report.add_warnings(outcome.registration.warnings);
   outcome.transform = given_transform(input, outcome.registration);

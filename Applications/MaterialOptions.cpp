@@ -42,7 +42,7 @@ void read_list(const std::string& option, const std::vector<std::string>& given,
 
 bool MaterialOptions::any_given() const {
   const MaterialOptions none;
-  return !young.empty() || !poisson.empty() || law != none.law || plane != none.plane;
+  return !young.empty() || !poisson.empty() || law || plane != none.plane;
 }
 
 std::vector<Option> options_of(MaterialOptions& o) {
@@ -57,7 +57,7 @@ std::vector<Option> options_of(MaterialOptions& o) {
        .help = "Poisson's ratio likewise, above -1 and below 0.5 (0.495)"},
       {.name = "material",
        .target = &o.law,
-       .help = "Law of elasticity; neo-hookean tissue does not fold",
+       .help = "Law of elasticity (st-venant-kirchhoff); neo-hookean tissue does not fold",
        .choices = {"st-venant-kirchhoff", "neo-hookean"}},
       {.name = "plane",
        .target = &o.plane,

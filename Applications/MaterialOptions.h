@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace crease {
 /// What elastic tissue is made of, as it was typed.
 struct MaterialOptions {
   std::vector<std::string> young, poisson;  ///< "E" of all tissue, "label=E" of one region
-  std::string law = "st-venant-kirchhoff";  ///< --material
+  std::optional<std::string> law;           ///< --material; without it "st-venant-kirchhoff"
   std::string plane = "stress";
   bool mean_dilatation = false;
 

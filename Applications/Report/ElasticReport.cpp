@@ -49,8 +49,8 @@ ReportHead head_of(const ElasticStory& story, const Json& result) {
   const auto& pairs = result.at("pairs");
   head.figures = {
       {"pairs", pairs.at("count").dump(),
-       fmt::format("{} along the skin, {} given", pairs.at("contour").dump(),
-                   pairs.at("given").dump())},
+       fmt::format("{} along the skin, {} along the muscle, {} given", pairs.at("contour").dump(),
+                   pairs.at("pectoral").dump(), pairs.at("given").dump())},
       {"mesh", result.at("triangles").dump() + " triangles",
        result.at("unknowns").dump() + " unknowns"},
       {"improvement by the pairs",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "Core/Error.h"
 
@@ -28,6 +29,27 @@ std::vector<Point<2>> chest_wall_ends(const RegionOfInterest& body) {
   const auto [first, last] =
       std::ranges::minmax_element(wall, {}, [](const Point<2>& p) { return p[1]; });
   return {*first, *last};
+}
+
+Polyline without_short_edges(Polyline ring, double shortest, double tolerance) {
+  struct Corner {
+    std::size_t place = 0;
+    double off = 0;  // from the edge that is drawn without it
+  };
+  while (ring.size() > 4) {
+    std::optional<Corner> least;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point<2>&before = ring[(i + ring.size() - 1) % ring.size()],
+            &after = ring[(i + 1) % ring.size()];
+      const double shorter = std::min((ring[i] - before).norm(), (after - ring[i]).norm());
+      if (shorter >= shortest) continue;
+      const double off = (closest_point_on_segment(ring[i], before, after) - ring[i]).norm();
+      if (off <= tolerance && (!least || off < least->off)) least = Corner{i, off};
+    }
+    if (!least) break;
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(least->place));
+  }
+  return ring;
 }
 
 FeatureLine outline_beyond(const Polyline& line, const Box<2>& box, const Point<2>& towards,

@@ -1,6 +1,7 @@
 #include "Registration/Elastic/ElasticRegistration.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "Registration/Elastic/BodyOutline.h"
 #include "Registration/Elastic/ImageImprovement.h"
@@ -11,6 +12,19 @@ namespace {
 
 /// Of a run of the first step, by share of the load; it takes about a third of the time.
 constexpr double kLoadShare = 0.3;
+
+constexpr double kShortestEdge = 1.0 / 3;  // of the outline, of the mesh's edges
+constexpr double kShortEdgeTolerance = 3;  // times that of the outline
+
+/// About that of the mesh: of equilateral triangles that fill the region.
+double edge_length(const RegionOfInterest& region, const ElasticDomainOptions& options) {
+  if (options.num_triangles == 0) {
+    return options.edge_length > 0 ? options.edge_length : region.bounds().size().maxCoeff() / 12;
+  }
+  double area = 0;
+  for (const Polyline& ring : region.rings()) area += signed_area(ring);
+  return std::sqrt(4 / std::sqrt(3.0) * std::abs(area) / options.num_triangles);
+}
 
 /// One registration, stage by stage.
 class ElasticRun {
@@ -128,18 +142,26 @@ class ElasticRun {
 }  // namespace
 
 CreasedDomain make_elastic_domain(const ElasticBody& body, const ElasticDomainOptions& options) {
+  const double tolerance = options.outline_tolerance;
+  const double shortest = kShortestEdge * edge_length(body.region, options);
   std::vector<Polyline> rings;
   for (const Polyline& ring : body.region.rings()) {
-    rings.push_back(simplify_polyline(ring, true, options.outline_tolerance));
+    rings.push_back(without_short_edges(simplify_polyline(ring, true, tolerance), shortest,
+                                        kShortEdgeTolerance * tolerance));
   }
   const RegionOfInterest region(std::move(rings));
+  std::vector<FeatureLine> lines = body.lines;
+  for (FeatureLine& line : lines) {
+    if (!line.edge_kinds.empty()) continue;
+    line.points = simplify_polyline(line.points, line.closed, tolerance);
+  }
   const CreasedDomainOptions wanted = {.degree = options.degree,
                                        .creases = options.creases,
                                        .edge_length = options.edge_length,
                                        .num_triangles = options.num_triangles,
                                        .rigid_bodies = false};
-  return body.labels != nullptr ? make_creased_domain(region, *body.labels, body.lines, wanted)
-                                : make_creased_domain(region, body.lines, wanted);
+  return body.labels != nullptr ? make_creased_domain(region, *body.labels, lines, wanted)
+                                : make_creased_domain(region, lines, wanted);
 }
 
 ElasticRegistrationResult register_elastically(const Image<float, 2>& fixed,

@@ -27,9 +27,11 @@ struct ElasticBody {
 struct ElasticDomainOptions {
   int degree = 2;
   bool creases = true;
-  int num_triangles = 600;         ///< 0: by the edge length
-  double edge_length = 0;          ///< mm; 0: a twelfth of the longer side
-  double outline_tolerance = 0.3;  ///< mm that the mesh's border may run off the region's outline
+  int num_triangles = 600;  ///< 0: by the edge length
+  double edge_length = 0;   ///< mm; 0: a twelfth of the longer side
+  /// mm that the mesh's border may run off the region's outline, and creases off lines; three times as much
+  /// where edges would be short.
+  double outline_tolerance = 0.3;
 };
 
 /// Meshes a body so that its lines and the outlines of its tissues are creases. Its border is made of few

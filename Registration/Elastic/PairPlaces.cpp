@@ -93,8 +93,10 @@ void renumber(std::vector<int>& numbers, const std::vector<char>& marked) {
 
 }  // namespace
 
-void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double tolerance_mm) {
-  for (std::size_t i = 0; i < pairs.fixed.size(); ++i) {
+void place_on_border(Landmarks<2>& pairs, const std::vector<int>& contour,
+                     const SplineBasis<2>& basis, double tolerance_mm) {
+  for (const int number : contour) {
+    const auto i = static_cast<std::size_t>(number);
     if (basis.contains(pairs.fixed[i])) continue;
     const Point<2> border = basis.nearest_point(pairs.fixed[i]);
     const Vector<2> shift = border - pairs.fixed[i];

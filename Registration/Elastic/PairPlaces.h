@@ -13,7 +13,9 @@ namespace crease {
 
 /// Moves fixed points that lie outside the domain, but within `tolerance_mm` of it, onto its border, and their
 /// partners with them: contours are curves, domains are polygons.
-void place_on_border(Landmarks<2>& pairs, const SplineBasis<2>& basis, double tolerance_mm);
+/// @param contour  numbers of the pairs that are looked at.
+void place_on_border(Landmarks<2>& pairs, const std::vector<int>& contour,
+                     const SplineBasis<2>& basis, double tolerance_mm);
 
 /// Moves moving points that lie outside the moving image's body, but within `snap_mm` of it, onto its border.
 /// @param name  what messages call the body.

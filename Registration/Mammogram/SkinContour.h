@@ -14,10 +14,10 @@ struct SkinContourOptions {
   double frame_margin_mm = 0.4;  ///< border pixels nearer to the frame's edge are not skin
   double smoothing_mm = 0.4;     ///< sigma_c: rms distance of the border pixels from the spline
   int num_points = 512;          ///< at equal arc length
-  double outline_mm = 0.2;       ///< the same as smoothing_mm, of the outline, which keeps the nipple
-  double curvature_blur = 2;     ///< Gaussian over the curvature, in points
-  double shortest_mm = 60;       ///< shorter contours are refused
-  bool force = false;            ///< takes them all the same
+  double outline_mm = 0.2;    ///< the same as smoothing_mm, of the outline, which keeps the nipple
+  double curvature_blur = 2;  ///< Gaussian over the curvature, in points
+  double shortest_mm = 60;    ///< shorter contours are refused
+  bool force = false;         ///< takes them all the same
   double nipple_knots_mm =
       2.5;  ///< distance of the knots of the finer curve that is searched for the nipple
   double nipple_blur_mm = 1.5;     ///< Gaussian over that curve's curvature

@@ -139,8 +139,9 @@ class ElasticMammograms : public testing::CommandFixture {
 
   std::string in(const char* name) const { return (folder / name).string(); }
 
-  void draw(const std::string& view, const char* pair = "--temporal") const {
-    ASSERT_EQ(run_crease({"phantom", "mammogram", "--seed", "3", "--size", "256", "--view", view,
+  void draw(const std::string& view, const char* pair = "--temporal",
+            const char* seed = "3") const {
+    ASSERT_EQ(run_crease({"phantom", "mammogram", "--seed", seed, "--size", "256", "--view", view,
                           pair, "--output", folder.path().string(), "--quiet"})
                   .code,
               0);
@@ -189,6 +190,19 @@ TEST_F(ElasticMammograms, PairsOutsideAMirroredBreastAreNamedAsGiven) {
                  {"pair 1: the moving point (3.00, 100.00) mm", "outside the moving image's body"});
 }
 
+// St. Venant-Kirchhoff tissue cannot follow the pairs of this breast; who asks for it is told so.
+TEST_F(ElasticMammograms, ResistFoldingWhereNobodyAskedForALaw) {
+  draw("mlo", "--temporal", "2");
+  const auto result = result_of(run());
+  EXPECT_EQ(result["material"]["law"], "neo-hookean");
+  EXPECT_EQ(result["equilibrium"], true);
+  EXPECT_GT(result["jacobian"]["min"], 0);
+  EXPECT_THAT(warnings_of(result), Contains(HasSubstr("neo-Hookean tissue")));
+  const auto insisting = run({"--material", "st-venant-kirchhoff"});
+  EXPECT_EQ(insisting.code, 5);
+  EXPECT_THAT(insisting.err, HasSubstr("no elastic equilibrium"));
+}
+
 // A given pair on one that was found along the skin takes its place.
 TEST_F(ElasticMammograms, GivenPairsDisplaceThoseFoundAlongTheSkin) {
   draw("mlo");
@@ -199,9 +213,12 @@ TEST_F(ElasticMammograms, GivenPairsDisplaceThoseFoundAlongTheSkin) {
                                 << found.moving[4].x() << ',' << found.moving[4].y() << '\n';
   const auto result = result_of(run({"--contour-pairs", "29", "--pairs", in("seen.csv")}));
   EXPECT_EQ(result["pairs"]["given"], 1);
-  EXPECT_EQ(result["pairs"]["contour"], found.size() - 1);
-  EXPECT_THAT(warnings_of(result), Contains(AllOf(HasSubstr("pair 1 lies"), HasSubstr("pair 6"),
-                                                  HasSubstr("left out"))));
+  EXPECT_GE(result["pairs"]["contour"], 26);  // without it, and an end that the film may have cut
+  EXPECT_LE(result["pairs"]["contour"], 28);
+  EXPECT_EQ(result["pairs"]["pectoral"], 4);
+  EXPECT_THAT(
+      warnings_of(result),
+      Contains(AllOf(HasSubstr("pair 1 lies"), HasSubstr("(contour 5)"), HasSubstr("left out"))));
 }
 
 }  // namespace

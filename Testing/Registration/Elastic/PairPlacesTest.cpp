@@ -38,7 +38,7 @@ TEST(PlaceOnBorder, KeepsDisplacements) {
   pairs.fixed[1] = {60, -3};
   const auto basis = testing::triangles_over(body().bounds(), {.degree = 2}, 4);
   auto placed = pairs;
-  place_on_border(placed, *basis, 0.5);
+  place_on_border(placed, {0, 1, 2, 3, 4, 5, 6, 7}, *basis, 0.5);
   EXPECT_LT((placed.fixed[0] - Point<2>(0, 40)).norm(), 1e-9);
   EXPECT_LT((placed.moving[0] - pairs.moving[0] - Vector<2>(0.4, 0)).norm(), 1e-9);
   EXPECT_TRUE(basis->contains(placed.fixed[0]));

@@ -132,7 +132,7 @@ std::vector<std::vector<int>> pairs_along_border(const Landmarks<2>& pairs,
       const double gap = places[k].arc - places[k - 1].arc;
       if (gap > widest) begin = k, widest = gap;
     }
-    std::ranges::rotate(places, places.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::rotate(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(begin), places.end());
     std::vector<int>& row = rows.emplace_back();
     for (const Place& place : places) row.push_back(place.pair);
   }

@@ -203,8 +203,8 @@ MammogramFrame find_frame(const Image<float, 2>& image, const MammogramFrameOpti
   Frame film = film_in(image, frame.inverted, range, options.padding_share);
   std::array<int, 2> widest;
   for (int a = 0; a < 2; ++a) {
-    widest[a] =
-        std::max(1, static_cast<int>(options.scanner_line_mm / frame.raster.spacing[a] + 0.5));
+    widest[a] = std::max(
+        1, static_cast<int>(std::lround(options.scanner_line_mm / frame.raster.spacing[a])));
   }
   const double clearly = (frame.inverted ? -kClearly : kClearly) * range.width();
   film = without_scanner_lines(image, film, widest, static_cast<float>(clearly), frame.notes);

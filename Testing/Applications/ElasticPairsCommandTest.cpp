@@ -87,7 +87,7 @@ TEST_F(ElasticPairsCommand, PairsUnlikeTheirNeighboursAreSuspected) {
 TEST_F(ElasticPairsCommand, ContradictionsAreToldInItsOwnWords) {
   std::string rows = kShift;
   for (int n = 0; n < 60; ++n) {
-    const double x = 20 + n % 8, y = 20 + n / 8;
+    const int x = 20 + n % 8, y = 20 + n / 8;
     rows += message(x, ',', y, ',', x + 0.3 * (n * 7 % 5), ',', y + 0.3 * (n * 3 % 4), '\n');
   }
   const auto refused = run({"--pairs", pairs(rows)});

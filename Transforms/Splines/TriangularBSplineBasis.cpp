@@ -269,7 +269,7 @@ std::vector<std::pair<int, int>> TriangularBSplineBasis<Dim>::couplings() const 
       for (int other : neighbours_[s]) {
         for (int i : control_points_of(static_cast<int>(s))) {
           for (int k : control_points_of(other)) {
-            if (i <= k) pairs.push_back({i, k});
+            if (i <= k) pairs.emplace_back(i, k);
           }
         }
       }

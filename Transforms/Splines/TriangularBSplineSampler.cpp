@@ -18,7 +18,7 @@ constexpr double kReach =
 /// Points of strips that wait until they fill the lanes.
 class TriangularBSplineSampler::StripPoints {
  public:
-  StripPoints(const TriangularBSplineSampler& sampler, Eigen::Ref<Eigen::MatrixXd> jets)
+  StripPoints(const TriangularBSplineSampler& sampler, Eigen::Ref<Eigen::MatrixXd>& jets)
       : sampler_(sampler), jets_(jets) {}
 
   void add(const Point<2>& x, int triangle, std::size_t column) {
@@ -66,7 +66,7 @@ class TriangularBSplineSampler::StripPoints {
 
  private:
   const TriangularBSplineSampler& sampler_;
-  Eigen::Ref<Eigen::MatrixXd> jets_;
+  Eigen::Ref<Eigen::MatrixXd>& jets_;
   LanePoints lanes_;
   int count_ = 0;
   Eigen::Index columns_[kLanes] = {};
@@ -92,11 +92,12 @@ TriangularBSplineSampler::TriangularBSplineSampler(
 }
 
 BorderPieces TriangularBSplineSampler::pieces_along(int edge) const {
-  const auto& [a, b] = border_.corners(edge);
+  const Point<2>&a = border_.corners(edge)[0], &b = border_.corners(edge)[1];
   const int triangle = basis_.find_simplex(0.5 * (a + b));
   const auto evaluate = [&](const std::vector<double>& parameters) {
     Eigen::MatrixXd jets(3 * phi_.rows(), static_cast<Eigen::Index>(parameters.size()));
-    StripPoints points(*this, jets);
+    Eigen::Ref<Eigen::MatrixXd> all = jets;
+    StripPoints points(*this, all);
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       points.add(a + parameters[k] * (b - a), triangle, k);
     }

@@ -55,7 +55,7 @@ inline Landmarks<2> motion_pairs(int count, double size = 1) {
   for (const Point<2>& p : {Point<2>(20, 0), Point<2>(40, 12), Point<2>(35, -18)}) {
     pairs.fixed.push_back(p);
   }
-  for (const auto& p : pairs.fixed) pairs.moving.push_back(p + smooth_motion(p, size));
+  for (const auto& p : pairs.fixed) pairs.moving.emplace_back(p + smooth_motion(p, size));
   return pairs;
 }
 
@@ -99,7 +99,7 @@ inline LinearConstraints held_control_points(const SplineBasis<2>& basis,
 /// Points along a segment.
 inline std::vector<Point<2>> along(const Point<2>& a, const Point<2>& b, int count) {
   std::vector<Point<2>> points;
-  for (int k = 0; k <= count; ++k) points.push_back(a + (b - a) * k / count);
+  for (int k = 0; k <= count; ++k) points.emplace_back(a + (b - a) * k / count);
   return points;
 }
 

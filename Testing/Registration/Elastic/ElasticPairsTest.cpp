@@ -29,7 +29,7 @@ ElasticDeformation crowded(int count) {
   for (int n = 0; n < count; ++n) {
     const Point<2> p(30 + 3 * numbers(), 3 * numbers());
     deformation.pairs.fixed.push_back(p);
-    deformation.pairs.moving.push_back(p + Vector<2>(numbers(), numbers()));
+    deformation.pairs.moving.emplace_back(p + Vector<2>(numbers(), numbers()));
   }
   return deformation;
 }

@@ -22,8 +22,8 @@ Landmarks<2> shifted_pairs() {
   Landmarks<2> pairs;
   for (double y : {20.0, 50.0, 80.0}) {
     for (double x : {20.0, 50.0, 80.0}) {
-      pairs.fixed.push_back({x, y});
-      pairs.moving.push_back({x + 3, y + 1});
+      pairs.fixed.emplace_back(x, y);
+      pairs.moving.emplace_back(x + 3, y + 1);
     }
   }
   return pairs;

@@ -63,11 +63,12 @@ Image<float, Dim> difference(const Image<float, Dim>& fixed, const Image<float, 
 }
 
 template <int Dim>
-double rms(const Image<float, Dim>& image) {
+double rms(const Image<float, Dim>& image, const Mask<Dim>* counted) {
   double sum = 0;
   std::int64_t count = 0;
-  for (const float v : image.values()) {
-    if (!std::isfinite(v)) continue;
+  for (std::size_t n = 0; n < image.values().size(); ++n) {
+    const float v = image.values()[n];
+    if (!std::isfinite(v) || (counted != nullptr && counted->values()[n] == 0)) continue;
     sum += double(v) * v;
     ++count;
   }
@@ -183,7 +184,7 @@ Picture checkerboard_picture(const Image<float, Dim>& fixed, const Image<float, 
 
 template <int Dim>
 Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Dim>& before,
-                           const Image<float, Dim>& after) {
+                           const Image<float, Dim>& after, const Mask<Dim>* counted) {
   check_same_size(fixed, before, "moving");
   check_same_size(fixed, after, "warped");
   const Image<float, Dim> differences[] = {difference(fixed, before), difference(fixed, after)};
@@ -203,8 +204,9 @@ Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Di
     }
   }
   return canvas::framed(panels, legend,
-                        {"rms difference before " + short_number(rms(differences[0])) + ", after " +
-                         short_number(rms(differences[1]))});
+                        {std::string("rms difference ") + (counted ? "in the body " : "") +
+                         "before " + short_number(rms(differences[0], counted)) + ", after " +
+                         short_number(rms(differences[1], counted))});
 }
 
 template <int Dim>
@@ -246,9 +248,9 @@ template Picture image_picture<3>(const Image<float, 3>&, const std::string&);
 template Picture checkerboard_picture<2>(const Image<float, 2>&, const Image<float, 2>&, bool);
 template Picture checkerboard_picture<3>(const Image<float, 3>&, const Image<float, 3>&, bool);
 template Picture difference_picture<2>(const Image<float, 2>&, const Image<float, 2>&,
-                                       const Image<float, 2>&);
+                                       const Image<float, 2>&, const Mask<2>*);
 template Picture difference_picture<3>(const Image<float, 3>&, const Image<float, 3>&,
-                                       const Image<float, 3>&);
+                                       const Image<float, 3>&, const Mask<3>*);
 template Picture jacobian_picture<2>(const Image<float, 2>&);
 template Picture jacobian_picture<3>(const Image<float, 3>&);
 template Picture strain_picture<2>(const Image<float, 2>&);

@@ -113,6 +113,20 @@ TEST(Pictures, DifferencesShareOneScaleAboutWhite) {
   EXPECT_EQ(pixel(picture, second + 200, kTop + 200), kNeutral);
 }
 
+// Only the caption changes: differences elsewhere are drawn, but not in the rms.
+TEST(Pictures, TheRmsOfABodyIsThatOfItsPixels) {
+  const auto fixed = waves<2>({60, 60});
+  auto before = fixed;
+  before(3, 3) += 50;
+  Mask<2> body(fixed.raster());
+  std::ranges::fill(body.values(), std::uint8_t{1});
+  const Picture all = difference_picture(fixed, before, fixed, &body);
+  body(3, 3) = 0;
+  const Picture without = difference_picture(fixed, before, fixed, &body);
+  EXPECT_EQ(pixel(all, kLeft + 200, kTop + 200), pixel(without, kLeft + 200, kTop + 200));
+  EXPECT_NE(all.rgb, without.rgb);
+}
+
 TEST(Pictures, PixelsFromOutsideTheMovingImageAreGrey) {
   const auto fixed = waves<2>({56, 56});
   auto warped = fixed;

@@ -6,9 +6,10 @@
 
 namespace crease {
 
-DampedIteration::DampedIteration(Eigen::SparseMatrix<double> M, const OptimizerOptions& stopping,
+DampedIteration::DampedIteration(const Eigen::SparseMatrix<double>& M,
+                                 const OptimizerOptions& stopping,
                                  const DampedIterationOptions& options)
-    : M_(std::move(M)), stopping_(stopping), options_(options) {
+    : M_(M), stopping_(stopping), options_(options) {
   check_options(stopping);
   if (!(options.step > 0 && options.step <= 1) || options.max_halvings < 0) {
     throw InvalidInput(message("damped iteration: need 0 < step <= 1 (is ", options.step,

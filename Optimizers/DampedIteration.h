@@ -24,7 +24,8 @@ class DampedIteration final : public Optimizer {
   /// @param M  of the function's size, symmetric, its lower triangle, compressed; positive definite in the
   ///           null space that minimize() is given.
   /// @throws InvalidInput for options out of range.
-  explicit DampedIteration(Eigen::SparseMatrix<double> M, const OptimizerOptions& stopping = {},
+  explicit DampedIteration(const Eigen::SparseMatrix<double>& M,
+                           const OptimizerOptions& stopping = {},
                            const DampedIterationOptions& options = {});
 
   /// @throws SolverError also when M is not positive definite in the null space, or the value still grows

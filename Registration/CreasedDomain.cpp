@@ -116,27 +116,34 @@ LabelImage<2> body_labels(const CreasedDomain& domain, const Raster<2>& raster) 
   return labels;
 }
 
+namespace {
+
+/// The label at a point, of the nearest sample; 0 outside the image.
+template <int Dim>
+int label_at(const LabelImage<Dim>& labels, const Point<Dim>& x) {
+  const Raster<Dim>& raster = labels.raster();
+  const Vector<Dim> position = raster.index(x);
+  typename LabelImage<Dim>::Index index;
+  for (int a = 0; a < Dim; ++a) {
+    const double nearest = std::round(position[a]);
+    if (!(nearest >= 0 && nearest < raster.size[a])) return 0;
+    index[a] = static_cast<int>(nearest);
+  }
+  return static_cast<int>(labels[index]);
+}
+
+}  // namespace
+
 template <int Dim>
 std::function<int(const Point<Dim>&)> region_of_label(const LabelImage<Dim>& labels) {
   const auto image = std::make_shared<const LabelImage<Dim>>(labels);
-  return [image](const Point<Dim>& x) {
-    const Raster<Dim>& raster = image->raster();
-    const Vector<Dim> position = raster.index(x);
-    typename LabelImage<Dim>::Index index;
-    for (int a = 0; a < Dim; ++a) {
-      const double nearest = std::round(position[a]);
-      if (!(nearest >= 0 && nearest < raster.size[a])) return 0;
-      index[a] = static_cast<int>(nearest);
-    }
-    return static_cast<int>((*image)[index]);
-  };
+  return [image](const Point<Dim>& x) { return label_at<Dim>(*image, x); };
 }
 
 template <int Dim>
 WeightField<Dim> label_weights(const LabelImage<Dim>& labels) {
-  return [region = region_of_label<Dim>(labels)](const Point<Dim>& x, int) {
-    return region(x) > 0 ? 1.0 : 0.0;
-  };
+  const auto image = std::make_shared<const LabelImage<Dim>>(labels);
+  return [image](const Point<Dim>& x, int) { return label_at<Dim>(*image, x) > 0 ? 1.0 : 0.0; };
 }
 
 template std::function<int(const Point<2>&)> region_of_label<2>(const LabelImage<2>&);

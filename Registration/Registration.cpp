@@ -172,7 +172,7 @@ Registration<Dim>& Registration<Dim>::energy(std::string name, double weight,
 template <int Dim>
 Registration<Dim>& Registration<Dim>::landmarks(Landmarks<Dim> landmarks, LandmarkOptions options) {
   parts_->landmarks = std::move(landmarks);
-  parts_->landmark_options = options;
+  parts_->landmark_options = std::move(options);
   return *this;
 }
 

@@ -29,7 +29,7 @@ Vector<2> turned(const Vector<2>& v, double angle) {
 std::vector<Vector<2>> on_two_rays(const Vector<2>& first, const Vector<2>& second, int count) {
   constexpr std::array kDistances = {1.0, 1.0, 0.5, 0.25};
   std::vector<Vector<2>> pattern;
-  for (int k = 0; k < count; ++k) pattern.push_back(kDistances[k] * (k % 2 == 0 ? first : second));
+  for (int k = 0; k < count; ++k) pattern.emplace_back(kDistances[k] * (k % 2 == 0 ? first : second));
   return pattern;
 }
 
@@ -157,7 +157,7 @@ void VertexClouds::set_border(int vertex, const std::vector<int>& line_edges, Cl
     sketch.plan.rule = VertexRule::kBorderMeeting;
     sketch.plan.radius *= kJunctionRadius / options_.alpha;
     for (int k = 1; k <= num_distinct_; ++k)
-      sketch.pattern.push_back(outwards * (1 - 0.25 * (k - 1)));
+      sketch.pattern.emplace_back(outwards * (1 - 0.25 * (k - 1)));
     return;
   }
   if (line_edges.size() > 1) {

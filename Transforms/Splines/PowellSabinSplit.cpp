@@ -57,7 +57,7 @@ void PowellSabinSplit::set_centres(const SimplexMesh<2>& mesh) {
     }
     const Vector<3> weights = opposite / opposite.sum();
     centre_weights_.push_back(weights);
-    centres_.push_back(weights[0] * p[s[0]] + weights[1] * p[s[1]] + weights[2] * p[s[2]]);
+    centres_.emplace_back(weights[0] * p[s[0]] + weights[1] * p[s[1]] + weights[2] * p[s[2]]);
     edges_of_.push_back({topology_.edge_between(s[0], s[1]), topology_.edge_between(s[1], s[2]),
                          topology_.edge_between(s[2], s[0])});
   }
@@ -80,7 +80,7 @@ void PowellSabinSplit::set_edge_points(const SimplexMesh<2>& mesh) {
       foot = (frame.foot(p) * below + frame.foot(q) * above) / (above + below);
     }
     shares_.push_back(1 - foot);
-    edge_points_.push_back((1 - foot) * mesh.vertices[a] + foot * mesh.vertices[b]);
+    edge_points_.emplace_back((1 - foot) * mesh.vertices[a] + foot * mesh.vertices[b]);
   }
 }
 

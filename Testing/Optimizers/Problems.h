@@ -133,8 +133,8 @@ class ConvexFunction final : public ObjectiveFunction {
 /// A function that offers a preconditioner.
 class PreconditionedFunction final : public ObjectiveFunction {
  public:
-  PreconditionedFunction(ObjectiveFunction& inner, Eigen::SparseMatrix<double> matrix)
-      : inner_(inner), matrix_(std::move(matrix)) {}
+  PreconditionedFunction(ObjectiveFunction& inner, const Eigen::SparseMatrix<double>& matrix)
+      : inner_(inner), matrix_(matrix) {}
   Eigen::Index size() const override { return inner_.size(); }
   double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
                   Eigen::SparseMatrix<double>* hessian) override {

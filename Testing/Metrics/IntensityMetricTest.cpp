@@ -156,7 +156,7 @@ TEST(IntensityMetric, InformationCountsManySamplesOfOneIntensity) {
     std::vector<Point<2>> mapped;
     for (std::int64_t r = 0; r < raster.num_rows(); ++r) {
       for (int i = 0; i < raster.size[0]; ++i) {
-        mapped.push_back(raster.row_start(r) + i * raster.index_to_point().col(0));
+        mapped.emplace_back(raster.row_start(r) + i * raster.index_to_point().col(0));
       }
     }
     // The rows leave out three samples each.

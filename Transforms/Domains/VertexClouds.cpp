@@ -29,7 +29,8 @@ Vector<2> turned(const Vector<2>& v, double angle) {
 std::vector<Vector<2>> on_two_rays(const Vector<2>& first, const Vector<2>& second, int count) {
   constexpr std::array kDistances = {1.0, 1.0, 0.5, 0.25};
   std::vector<Vector<2>> pattern;
-  for (int k = 0; k < count; ++k) pattern.emplace_back(kDistances[k] * (k % 2 == 0 ? first : second));
+  for (int k = 0; k < count; ++k)
+    pattern.emplace_back(kDistances[k] * (k % 2 == 0 ? first : second));
   return pattern;
 }
 

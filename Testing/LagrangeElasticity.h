@@ -26,7 +26,7 @@ class LagrangeBody {
       for (int e = 0; e < 3; ++e) {
         const std::pair<int, int> edge = std::minmax(s[e], s[(e + 1) % 3]);
         const auto [found, is_new] = middles.try_emplace(edge, static_cast<int>(nodes_.size()));
-        if (is_new) nodes_.push_back(0.5 * (nodes_[edge.first] + nodes_[edge.second]));
+        if (is_new) nodes_.emplace_back(0.5 * (nodes_[edge.first] + nodes_[edge.second]));
         element[3 + e] = found->second;
       }
       elements_.push_back(element);

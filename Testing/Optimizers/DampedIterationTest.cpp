@@ -16,8 +16,8 @@ using ::testing::ThrowsMessage;
 /// 1/2 x^T M x + 1/2 w |x - target|^2: the largest eigenvalue of M^-1 w is w over M's smallest.
 class SpringsOnABody final : public ObjectiveFunction {
  public:
-  SpringsOnABody(Eigen::SparseMatrix<double> M, double weight, Eigen::VectorXd target)
-      : M_(std::move(M)), weight_(weight), target_(std::move(target)) {}
+  SpringsOnABody(const Eigen::SparseMatrix<double>& M, double weight, Eigen::VectorXd target)
+      : M_(M), weight_(weight), target_(std::move(target)) {}
   Eigen::Index size() const override { return target_.size(); }
   double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
                   Eigen::SparseMatrix<double>* hessian) override {

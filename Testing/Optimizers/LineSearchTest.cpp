@@ -84,7 +84,8 @@ TEST(LineSearch, NeedsNoMoreIterationsOnFinerMeshesWithAPreconditioner) {
       const double h2 = 1.0 / (side * side);
       Eigen::VectorXd b(side * side);
       for (int p = 0; p < b.size(); ++p) {
-        const double x = (p % side + 0.5) / side, y = (p / side + 0.5) / side;
+        const int row = p / side, column = p % side;
+        const double x = (column + 0.5) / side, y = (row + 0.5) / side;
         b[p] = h2 * 10 * std::sin(7 * x + 3 * y * y);
       }
       testing::ConvexFunction convex(plate(side), b, h2);

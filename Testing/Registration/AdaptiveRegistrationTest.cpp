@@ -46,7 +46,8 @@ class AdaptiveRegistration : public ::testing::Test {
     }
     return make_creased_domain(rectangle_of(raster), {}, options);
   }
-  AdaptiveComposition<2> composition(bool moved, double noise, Landmarks<2> landmarks = {}) const {
+  AdaptiveComposition<2> composition(bool moved, double noise,
+                                     const Landmarks<2>& landmarks = {}) const {
     AdaptiveComposition<2> parts;
     parts.make_basis = [this](const auto& places) { return domain(places).basis; };
     parts.compose = [this, moved, noise, landmarks](const auto& basis) {

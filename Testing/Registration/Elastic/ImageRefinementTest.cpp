@@ -121,7 +121,7 @@ TEST(ImageRefinement, FindsASmallMotionOnTopOfALargeOne) {
 
 TEST(ImageRefinement, HoldsThePins) {
   RefinementScene scene;
-  scene.options.pins.push_back(0.5 * (scene.box.lower + scene.box.upper));
+  scene.options.pins.emplace_back(0.5 * (scene.box.lower + scene.box.upper));
   const auto result = scene.refine();
   for (const Point<2>& pin : scene.options.pins) {
     EXPECT_LT((result.transform->map(pin) - pin).norm(), 1e-9 * 96);

@@ -190,7 +190,7 @@ TEST(LoadStepsExact, CollapsedKnotsAreLagrangeElements) {
     const Point<2>& p = body.nodes()[n];
     prescribed[static_cast<int>(n)] = testing::smooth_motion(p);
     deformation.pairs.fixed.push_back(p);
-    deformation.pairs.moving.push_back(p + testing::smooth_motion(p));
+    deformation.pairs.moving.emplace_back(p + testing::smooth_motion(p));
   }
   ASSERT_GT(prescribed.size(), 10U);
   body.solve(prescribed, 5);

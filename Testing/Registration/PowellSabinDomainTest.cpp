@@ -91,9 +91,10 @@ TEST(PowellSabinDomain, DividesTrianglesWhoseLandmarksContradictEachOther) {
   const CreasedDomainOptions coarse = {.spline = TriangleSpline::kPowellSabin, .edge_length = 20};
   Landmarks<2> landmarks;
   for (int k = 0; k < 25; ++k) {
-    landmarks.fixed.emplace_back(50 + 1.3 * (k % 5), 45 + 1.1 * (k / 5));
-    landmarks.moving.push_back(landmarks.fixed.back() +
-                               Vector<2>(0.3 * std::sin(3.0 * k), 0.1 * k));
+    const int row = k / 5;
+    landmarks.fixed.emplace_back(50 + 1.3 * (k % 5), 45 + 1.1 * row);
+    landmarks.moving.emplace_back(landmarks.fixed.back() +
+                                  Vector<2>(0.3 * std::sin(3.0 * k), 0.1 * k));
   }
   const auto before = make_creased_domain(region, {}, coarse);
   ASSERT_TRUE(find_contradiction(landmarks, *before.basis, LandmarkMode::kExact).has_value());

@@ -17,8 +17,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kDetails =
     R"(Deforms the breast of the fixed image, an elastic body that is creased at the pectoral muscle, until its
 point pairs lie where they belong in the moving image, and refines that by the intensities. Without --pairs
-the breast, the muscle and pairs along the skin are found in the images. Any other 2D images will do with
---roi image or --roi FILE and --pairs FILE.
+the breast, the muscle and pairs along the skin and the muscle's edge are found in the images; where St.
+Venant-Kirchhoff tissue cannot follow these, neo-Hookean tissue is taken unless --material says otherwise.
+Any other 2D images will do with --roi image or --roi FILE and --pairs FILE.
 
 Writes into DIR: warped.* (the moving image on the fixed grid), displacement.mha (T(x) - x in mm),
 jacobian.mha, transform.json (for crease warp: the refinement, then the deformation), pairs.csv (as they were
@@ -26,7 +27,7 @@ met), pictures/*.png (stiffness, mesh, jacobian, difference and more), report.ht
 browser), config.toml and, last, result.json. Physical coordinates in mm (LPS) everywhere.
 
 Exit code 5 where no equilibrium is found: the last one on the way is written, and the message says how far it
-got, and where it failed.
+got, and where it failed; and where the refinement fails: what the pairs do is written.
 
 Example: last year's mammogram onto this year's, with pairs inside the breast beside those along the skin
   crease elastic --fixed 2025.dcm --moving 2024.dcm --pairs vessels.csv --contour-pairs 29 --output compared)";
@@ -80,9 +81,8 @@ ExitCode register_pair(const ElasticCommandOptions& options, const std::string& 
   add_warnings(outcome, evaluation, report);
   for (const std::string& warning : report.warnings()) progress.warn(warning);
 
-  const bool converged = outcome.registration.failure.empty();
-  const std::string failure =
-      outcome.registration.failure + " The result is the last equilibrium on the way, not refined.";
+  const std::string& failure = outcome.registration.failure;
+  const bool converged = failure.empty();
   if (!converged) report.add_warning(failure);
   const char* status = converged ? "ok" : "not_converged";
   const ElasticStory story{options, input, outcome, evaluation, certificate, errors};

@@ -56,10 +56,9 @@ struct ElasticCommandOptions {
   }
   /// Whether the images are looked at as mammograms.
   bool needs_anatomy() const {
-    return roi == "auto" || pectoral_source() != "none" || num_contour_pairs() > 0 ||
-           num_pectoral_pairs() > 0;
+    return roi == "auto" || pectoral_source() != "none" || num_contour_pairs() > 0;
   }
-  /// Of equal steps.
+  /// How many equal steps. Not with --steps adaptive.
   int num_steps() const { return std::stoi(steps); }
 };
 

@@ -51,8 +51,7 @@ Json material_json(const ElasticStory& story) {
   const auto tissue = [](const ElasticTissue& t) {
     return Json{{"young", t.young}, {"poisson", t.poisson}};
   };
-  const bool neo_hookean = material.law == ElasticLaw::kNeoHookean;
-  Json json = {{"law", neo_hookean ? "neo-hookean" : "st-venant-kirchhoff"},
+  Json json = {{"law", law_name(material.law)},
                {"plane", story.options.material.plane},
                {"breast", tissue(material.tissue)},
                {"regions", Json::object()}};
@@ -73,7 +72,7 @@ Json load_steps_json(const LoadStepResult& load) {
                     {"largest_reaction", step.largest_reaction},
                     {"largest_reaction_pair", step.largest_reaction_row + 1},
                     {"factorizations", step.factorizations},
-                    {"unstable", step.unstable}});
+                    {"indefinite_tangent", step.indefinite_tangent}});
   }
   return json;
 }
@@ -154,7 +153,7 @@ Json figures_json(const ElasticStory& story) {
   json["material"] = material_json(story);
   json["quadrature"] = {{"rule", story.options.quadrature},
                         {"relative_error", or_null(registration.load.quadrature_error)}};
-  json["equilibrium"] = registration.failure.empty();
+  json["equilibrium"] = registration.load.fraction == 1;
   json["unstable_equilibrium"] = registration.load.unstable;
   json["load_fraction"] = registration.load.fraction;
   json["load_steps"] = load_steps_json(registration.load);
@@ -193,7 +192,7 @@ std::string summary_text(const ElasticStory& story, double seconds) {
                      "pair {}{}",
                      100 * step.fraction, step.newton_iterations, step.least_determinant,
                      step.largest_reaction, step.largest_reaction_row + 1,
-                     step.unstable ? ", unstable equilibrium" : ""));
+                     step.indefinite_tangent ? ", tangent not positive definite" : ""));
   }
   if (registration.load.unstable) line("equilibrium", "unstable: a small push would end it");
   line("improvement",

@@ -179,7 +179,7 @@ std::vector<int> append_found(const Landmarks<2>& found, ElasticInput& input, Ru
   append(input.pairs.names, found.names);
   std::vector<int> numbers(found.fixed.size());
   std::iota(numbers.begin(), numbers.end(), first);
-  report.add_warnings(leave_out_contour_pairs_at_others(input.pairs, numbers));
+  report.add_warnings(leave_out_found_pairs(input.pairs, numbers));
   return numbers;
 }
 

@@ -9,7 +9,8 @@
 namespace crease {
 namespace {
 
-constexpr double kQuietSnap = 1.5;  // mm that a smooth contour may run outside the mesh
+/// How far outside the mesh a pair along the skin may lie, mm: it is moved onto the border without a word.
+constexpr double kContourSnap = 1.5;
 
 ElasticDomainOptions domain_options(const ElasticCommandOptions& o) {
   ElasticDomainOptions options;
@@ -73,7 +74,7 @@ ElasticOutcome run_elastic(const ElasticCommandOptions& options, const ElasticIn
   outcome.domain = make_elastic_domain(body, domain_options(options));
   report.add_warnings(outcome.domain.warnings);
   outcome.pairs = input.pairs;
-  place_on_border(outcome.pairs, input.contour, *outcome.domain.basis, kQuietSnap);
+  place_on_border(outcome.pairs, input.contour, *outcome.domain.basis, kContourSnap);
   report.add_warnings(
       strange_pairs(outcome.pairs, outcome.domain.basis->bounds().size().minCoeff()));
   report.end_stage("domain");
@@ -86,7 +87,7 @@ ElasticOutcome run_elastic(const ElasticCommandOptions& options, const ElasticIn
     }
   };
   run();
-  if (!outcome.registration.failure.empty() && may_choose_law(options)) {
+  if (outcome.registration.load.fraction < 1 && may_choose_law(options)) {
     report.add_warning(
         message("St. Venant-Kirchhoff tissue cannot follow the pairs found in the images beyond "
                 "load fraction ",

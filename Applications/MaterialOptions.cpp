@@ -38,7 +38,14 @@ void read_list(const std::string& option, const std::vector<std::string>& given,
   }
 }
 
+constexpr const char* kNeoHookean = "neo-hookean";
+constexpr const char* kStVenantKirchhoff = "st-venant-kirchhoff";
+
 }  // namespace
+
+std::string law_name(ElasticLaw law) {
+  return law == ElasticLaw::kNeoHookean ? kNeoHookean : kStVenantKirchhoff;
+}
 
 bool MaterialOptions::any_given() const {
   const MaterialOptions none;
@@ -58,7 +65,7 @@ std::vector<Option> options_of(MaterialOptions& o) {
       {.name = "material",
        .target = &o.law,
        .help = "Law of elasticity (st-venant-kirchhoff); neo-hookean tissue does not fold",
-       .choices = {"st-venant-kirchhoff", "neo-hookean"}},
+       .choices = {kStVenantKirchhoff, kNeoHookean}},
       {.name = "plane",
        .target = &o.plane,
        .help = "In 2D: tissue grows thicker and thinner freely (stress), or is held (strain)",
@@ -74,7 +81,7 @@ Option mean_dilatation_option(MaterialOptions& o) {
 
 ElasticMaterial material_of(const MaterialOptions& options) {
   ElasticMaterial material;
-  if (options.law == "neo-hookean") material.law = ElasticLaw::kNeoHookean;
+  if (options.law == kNeoHookean) material.law = ElasticLaw::kNeoHookean;
   if (options.plane == "strain") material.plane = PlaneState::kStrain;
   material.mean_dilatation = options.mean_dilatation;
   // All tissue first, so that regions inherit what holds for it whatever the order.

@@ -25,6 +25,9 @@ std::vector<Option> options_of(MaterialOptions& options);
 /// has no room for.
 Option mean_dilatation_option(MaterialOptions& options);
 
+/// As --material names it.
+std::string law_name(ElasticLaw law);
+
 /// @throws UsageError naming the option and what cannot be read, or lies out of range.
 ElasticMaterial material_of(const MaterialOptions& options);
 

@@ -1,5 +1,6 @@
 #include "Applications/OutputFolder.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <system_error>
@@ -72,14 +73,17 @@ OutputFolder::OutputFolder(fs::path folder, std::vector<std::string> inputs)
   }
 }
 
+bool OutputFolder::is_input(const std::string& name) const {
+  return std::ranges::any_of(inputs_, [&](const std::string& input) {
+    std::error_code ignored;
+    return fs::equivalent(input, file(name), ignored);
+  });
+}
+
 void OutputFolder::check_is_no_input(const std::string& name) const {
-  std::error_code ignored;
-  for (const std::string& input : inputs_) {
-    if (fs::equivalent(input, file(name), ignored)) {
-      throw UsageError(message("--output ", folder_.string(), ": its ", name,
-                               " is an input of this run; choose another folder."));
-    }
-  }
+  if (!is_input(name)) return;
+  throw UsageError(message("--output ", folder_.string(), ": its ", name,
+                           " is an input of this run; choose another folder."));
 }
 
 void OutputFolder::write(const std::string& name,
@@ -102,7 +106,8 @@ void OutputFolder::remove_numbered(const std::string& name, std::size_t first) c
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
     const std::string file = entry.path().filename().string();
-    if (number_behind(name + "-", file).value_or(0) >= first) earlier.push_back(file);
+    const auto number = number_behind(name + "-", file);
+    if (number && *number >= first && !is_input(file)) earlier.push_back(file);
   }
   for (const std::string& file : earlier) remove(file);
 }

@@ -27,11 +27,13 @@ class OutputFolder {
   void write_text(const std::string& name, const std::string& text) const;
   /// Removes what an earlier run wrote and this one does not. @throws UsageError as above.
   void remove(const std::string& name) const;
-  /// Likewise files of this name with a number from `first` on, such as NAME-3.mha, whatever their ending.
+  /// Removes files of this name with a number from `first` on, such as NAME-3.mha, whatever their ending; inputs of
+  /// this run stay.
   void remove_numbered(const std::string& name, std::size_t first) const;
   void finish(const std::string& result_json) const { write_text("result.json", result_json); }
 
  private:
+  bool is_input(const std::string& name) const;
   void check_is_no_input(const std::string& name) const;
 
   std::filesystem::path folder_;

@@ -219,6 +219,7 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   const bool gate_failed = fails_gate(options, evaluation, certificate, report);
   for (const std::string& warning : report.warnings()) progress.warn(warning);
 
+  if (!outcome.failure.empty()) report.add_warning(outcome.failure);
   const char* status = !outcome.converged ? "not_converged" : (gate_failed ? "gate_failed" : "ok");
   const Json figures = figures_json(options, input, outcome, evaluation, certificate);
   const Json result = report.result(status, figures);
@@ -231,6 +232,7 @@ ExitCode register_images(const RegisterOptions& options, const std::string& conf
   std::cout << (options.run.json ? json
                                  : summary_text(options, input, outcome, evaluation, certificate,
                                                 report.elapsed_s()));
+  if (!outcome.failure.empty()) throw SolverError(outcome.failure);  // all is written
   if (!outcome.converged) return ExitCode::kNotConverged;
   return gate_failed ? ExitCode::kGateFailed : ExitCode::kSuccess;
 }

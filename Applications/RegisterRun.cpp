@@ -293,7 +293,7 @@ RegisterOutcome<Dim> nonrigid_outcome(const RegisterOptions& options,
     outcome.converged = result.converged;
     outcome.improved = result.improved;
   } catch (const SolverError& error) {
-    report.add_warning(message("no solution: ", error.what(), " The result is the initial map."));
+    outcome.failure = message("no solution: ", error.what(), " The result is the initial map.");
     if (basis.basis != nullptr) {
       report.add_warnings(make_landmark_constraints(input.landmarks, *basis.basis, alignment.map,
                                                     landmark_options(options),

@@ -34,11 +34,12 @@ struct RegisterOutcome {
   Eigen::Index free_parameters = 0;
   double domain_measure = 0;  ///< mm^Dim
   bool converged = true;
+  std::string failure;  ///< why there is no solution; empty: there is one
   bool improved = true;
 };
 
 /// Assembles the registration that the options describe and runs it. Warnings and timings go to the
-/// report. When the solver fails, the outcome is the initial map, not converged, with a warning that says why.
+/// report. When the solver fails, the outcome is the initial map, not converged, and says why.
 template <int Dim>
 RegisterOutcome<Dim> run_registration(const RegisterOptions& options,
                                       const RegisterInput<Dim>& input, RunReport& report,

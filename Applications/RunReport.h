@@ -17,7 +17,7 @@ class RunReport {
   void add_warning(const std::string& text) { warnings_.push_back(text); }
   void add_warnings(const std::vector<std::string>& texts);
   /// Ends the stage that began with the last call (or at the start) and names it. Stages of the same
-  /// name add up.
+  /// name add up. Gives memory that the stage has freed back to the system.
   void end_stage(const std::string& name);
   /// A part of the running stage that was measured elsewhere: it is not counted in the stage again.
   void add_part(const std::string& name, double seconds);

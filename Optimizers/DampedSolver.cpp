@@ -1,6 +1,7 @@
 #include "Optimizers/DampedSolver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "Optimizers/LinearConstraints.h"
@@ -40,9 +41,10 @@ void DampedSolver::hessian_changed() {
 }
 
 void DampedSolver::set_damping(double damping) {
-  const double floor = diagonal_.size() == 0 ? 0.0 : kDiagonalFloor * diagonal_.mean();
+  const double floor = diagonal_.size() == 0 ? 0.0 : kDiagonalFloor * diagonal_.cwiseAbs().mean();
   for (Eigen::Index j = 0; j < A_.cols(); ++j) {
-    A_.valuePtr()[A_.outerIndexPtr()[j]] = diagonal_[j] + damping * std::max(diagonal_[j], floor);
+    A_.valuePtr()[A_.outerIndexPtr()[j]] =
+        diagonal_[j] + damping * std::max(std::abs(diagonal_[j]), floor);
   }
 }
 

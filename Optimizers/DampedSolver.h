@@ -29,7 +29,7 @@ struct LinearSolverOptions {
   int max_cg_iterations = 12;  ///< more: factor anew (three times as many for the scalar factor)
 };
 
-/// Solves (H + mu D) s = b for a sequence of Hessians of one pattern; D = diag(H), not below 1e-6 of its
+/// Solves (H + mu D) s = b for a sequence of Hessians of one pattern; D = |diag(H)|, not below 1e-6 of its
 /// mean. Keeps what may serve the next system: analysis of the pattern, a factor as preconditioner.
 class DampedSolver {
  public:

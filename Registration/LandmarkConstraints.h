@@ -24,9 +24,9 @@ enum class LandmarkConflict { kError, kCompromise };
 struct LandmarkOptions {
   LandmarkMode mode = LandmarkMode::kExact;
   LandmarkConflict conflict = LandmarkConflict::kError;
-  double sigma_mm = 1;  ///< soft landmarks without a sigma of their own
-  double weight = 1;    ///< lambda of the soft landmarks
-  LandmarkWords words = {};
+  double sigma_mm = 1;       ///< soft landmarks without a sigma of their own
+  double weight = 1;         ///< lambda of the soft landmarks
+  LandmarkWords words = {};  ///< of messages
 };
 
 /// Exact landmarks as linear constraints on the control points, T(p_j) = q_j, and their null space.

@@ -63,12 +63,12 @@ Image<float, Dim> difference(const Image<float, Dim>& fixed, const Image<float, 
 }
 
 template <int Dim>
-double rms(const Image<float, Dim>& image, const Mask<Dim>* counted) {
+double rms(const Image<float, Dim>& image, const Mask<Dim>* body) {
   double sum = 0;
   std::int64_t count = 0;
   for (std::size_t n = 0; n < image.values().size(); ++n) {
     const float v = image.values()[n];
-    if (!std::isfinite(v) || (counted != nullptr && counted->values()[n] == 0)) continue;
+    if (!std::isfinite(v) || (body != nullptr && body->values()[n] == 0)) continue;
     sum += double(v) * v;
     ++count;
   }
@@ -184,9 +184,12 @@ Picture checkerboard_picture(const Image<float, Dim>& fixed, const Image<float, 
 
 template <int Dim>
 Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Dim>& before,
-                           const Image<float, Dim>& after, const Mask<Dim>* counted) {
+                           const Image<float, Dim>& after, const Mask<Dim>* body) {
   check_same_size(fixed, before, "moving");
   check_same_size(fixed, after, "warped");
+  if (body != nullptr && body->size() != fixed.size()) {
+    throw InvalidInput("difference picture: the mask must have the fixed image's pixels.");
+  }
   const Image<float, Dim> differences[] = {difference(fixed, before), difference(fixed, after)};
   const ColourScale scale = difference_scale(differences[0]);
   Legend legend = legend_of(scale);
@@ -204,9 +207,9 @@ Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Di
     }
   }
   return canvas::framed(panels, legend,
-                        {std::string("rms difference ") + (counted ? "in the body " : "") +
-                         "before " + short_number(rms(differences[0], counted)) + ", after " +
-                         short_number(rms(differences[1], counted))});
+                        {std::string("rms difference ") + (body ? "in the body " : "") + "before " +
+                         short_number(rms(differences[0], body)) + ", after " +
+                         short_number(rms(differences[1], body))});
 }
 
 template <int Dim>

@@ -41,10 +41,10 @@ Picture checkerboard_picture(const Image<float, Dim>& fixed, const Image<float, 
 
 /// before - fixed and after - fixed side by side in one diverging scale, with a legend. Pixels that
 /// are not finite (warped from outside the moving image) are grey and not in the rms.
-/// @param counted  samples of the rms, those of an elastic body; null: all.
+/// @param body  samples of the rms; null: all.
 template <int Dim>
 Picture difference_picture(const Image<float, Dim>& fixed, const Image<float, Dim>& before,
-                           const Image<float, Dim>& after, const Mask<Dim>* counted = nullptr);
+                           const Image<float, Dim>& after, const Mask<Dim>* body = nullptr);
 
 /// det grad T in logarithmic diverging colours about 1 (blue: shrinks from fixed to moving, red:
 /// grows); folded pixels (det <= 0) in neon green, however small; pixels without a finite value in

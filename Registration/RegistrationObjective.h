@@ -32,8 +32,9 @@ class RegistrationObjective final : public ObjectiveFunction {
                         std::vector<WeightedEnergy<Dim>> energies);
 
   Eigen::Index size() const override;
-  /// Infinite where so few samples fall inside the moving image that a metric refuses, unless it is the
-  /// first point of all. @throws SolverError when a term is not finite; the message names the term.
+  /// Infinite where so few samples fall inside the moving image that a metric refuses, or where an energy is
+  /// infinite (neo-Hookean tissue turned inside out), unless no point was evaluated before.
+  /// @throws SolverError there, and when a term is not a number; the message names the term.
   double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
                   Eigen::SparseMatrix<double>* hessian) override;
   /// Gauss-Newton's matrix at x, with weak springs for what it does not see. Where no energy couples

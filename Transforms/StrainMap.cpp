@@ -1,18 +1,16 @@
 #include "Transforms/StrainMap.h"
 
-#include "Core/Parallel.h"
+#include "Transforms/TransformRows.h"
 
 namespace crease {
 
 template <int Dim>
 std::vector<double> strain_map(const Transform<Dim>& transform, const Raster<Dim>& raster) {
   std::vector<double> strain(static_cast<std::size_t>(raster.num_samples()));
-  const Vector<Dim> step = raster.index_to_point().col(0);
-  parallel_for(raster.num_rows(), [&](std::int64_t row) {
-    const Point<Dim> start = raster.row_start(row);
-    for (int i = 0; i < raster.size[0]; ++i) {
-      strain[static_cast<std::size_t>(row * raster.size[0] + i)] =
-          strain_norm<Dim>(transform.spatial_jacobian(start + i * step));
+  for_each_row(transform, raster, [&](std::int64_t row, const auto&, const auto& samples) {
+    const auto first = static_cast<std::size_t>(row * raster.size[0]);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      strain[first + i] = strain_norm<Dim>(samples[i].jacobian);
     }
   });
   return strain;

@@ -95,7 +95,7 @@ void add_load_steps(const ElasticStory& story, HtmlReport& report) {
          fmt::format("{:.3f}", step.least_determinant),
          fmt::format("{:.4g}", step.largest_reaction),
          std::to_string(step.largest_reaction_row + 1), std::to_string(step.factorizations),
-         step.unstable ? "not positive definite" : "positive definite"});
+         step.indefinite_tangent ? "not positive definite" : "positive definite"});
   }
   report.add_table(table);
   const LoadStepResult& load = story.outcome.registration.load;

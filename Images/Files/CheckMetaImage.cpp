@@ -96,7 +96,7 @@ void check_pixels(const std::filesystem::path& path, const HeaderFields& fields,
 
 }  // namespace
 
-bool check_meta_image(const std::filesystem::path& path) {
+FileFacts check_meta_image(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path, kLongestHeader);
   const std::string_view text = ByteReader(bytes, false).text(0, bytes.size());
   std::size_t at = 0;
@@ -121,7 +121,7 @@ bool check_meta_image(const std::filesystem::path& path) {
     fail(path, message("its pixels, the file ", data_path.string(), ", are missing"));
   }
   check_pixels(path, fields, local ? at : 0, data_path, {values, channels, needed});
-  return fields.contains("ElementSpacing") || fields.contains("ElementSize");
+  return {fields.contains("ElementSpacing") || fields.contains("ElementSize")};
 }
 
 }  // namespace crease

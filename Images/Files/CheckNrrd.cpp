@@ -101,7 +101,7 @@ void check_data(const std::filesystem::path& path, const std::string& encoding, 
 
 }  // namespace
 
-bool check_nrrd(const std::filesystem::path& path) {
+FileFacts check_nrrd(const std::filesystem::path& path) {
   const auto bytes = read_bytes(path);
   std::size_t at = 0;
   const HeaderFields fields = read_fields(path, ByteReader(bytes, false).text(0, bytes.size()), at);
@@ -128,7 +128,7 @@ bool check_nrrd(const std::filesystem::path& path) {
   }
   if (name.empty()) {
     check_data(path, encoding, Bytes(bytes).subspan(at), values, needed);
-    return tells_spacing;
+    return {tells_spacing};
   }
   const auto data_path = path.parent_path() / name;
   if (!std::filesystem::exists(data_path)) {
@@ -138,7 +138,7 @@ bool check_nrrd(const std::filesystem::path& path) {
   const auto skip = std::strtoull(value_of(fields, "byte skip", "0").c_str(), nullptr, 10);
   const auto skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, data.size()));
   check_data(data_path, encoding, Bytes(data).subspan(skipped), values, needed);
-  return tells_spacing;
+  return {tells_spacing};
 }
 
 }  // namespace crease

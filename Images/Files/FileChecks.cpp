@@ -5,31 +5,31 @@
 
 namespace crease {
 
-bool check_file(const std::filesystem::path& path, ImageFormat format) {
+FileFacts check_file(const std::filesystem::path& path, ImageFormat format) {
   switch (format) {
     case ImageFormat::kPng:
       check_png(path);
-      return false;
+      return {};
     case ImageFormat::kJpeg:
       read_jpeg(path, true);
-      return false;
+      return {};
     case ImageFormat::kTiff:
       check_tiff(path);
-      return false;
+      return {};
     case ImageFormat::kPgm:
       read_pgm(path, true);
-      return false;
+      return {};
     case ImageFormat::kDicom:
-      return check_dicom(path).has_spacing;
+      return {check_dicom(path).has_spacing};
     case ImageFormat::kNifti:
       check_nifti(path);
-      return true;
+      return {.has_spacing = true};
     case ImageFormat::kMetaImage:
       return check_meta_image(path);
     case ImageFormat::kNrrd:
       return check_nrrd(path);
   }
-  return false;
+  return {};
 }
 
 }  // namespace crease

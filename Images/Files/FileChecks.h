@@ -25,9 +25,12 @@ struct NiftiFacts {
 };
 NiftiFacts check_nifti(const std::filesystem::path& path);
 
-/// @return whether the header says how large the pixels are.
-bool check_meta_image(const std::filesystem::path& path);
-bool check_nrrd(const std::filesystem::path& path);
+/// What a header says besides what ITK tells.
+struct FileFacts {
+  bool has_spacing = false;  ///< otherwise ITK takes 1 mm
+};
+FileFacts check_meta_image(const std::filesystem::path& path);
+FileFacts check_nrrd(const std::filesystem::path& path);
 
 /// What the reader of DICOM files has to know besides what ITK tells.
 struct DicomFacts {
@@ -37,7 +40,7 @@ struct DicomFacts {
 DicomFacts check_dicom(const std::filesystem::path& path);
 
 /// The right one of the above; PGM and JPEG files are checked by reading them.
-/// @return whether the file says how large its pixels are; NIfTI always does.
-bool check_file(const std::filesystem::path& path, ImageFormat format);
+/// NIfTI files always have a spacing.
+FileFacts check_file(const std::filesystem::path& path, ImageFormat format);
 
 }  // namespace crease

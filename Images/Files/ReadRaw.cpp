@@ -164,9 +164,9 @@ RawImage decode(const std::filesystem::path& path, ImageFormat format, bool with
   if (format == ImageFormat::kJpeg) return read_jpeg(path, with_pixels);
   if (format == ImageFormat::kNifti) return read_nifti(path, with_pixels);
   if (format != ImageFormat::kDicom) {
-    const bool spacing_known = check_file(path, format);
+    const FileFacts facts = check_file(path, format);
     RawImage image = read_with_itk(path, format, with_pixels);
-    image.spacing_known = spacing_known;
+    image.spacing_known = facts.has_spacing;
     return image;
   }
   const DicomFacts facts = check_dicom(path);

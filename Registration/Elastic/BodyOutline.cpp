@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <numeric>
 
 #include "Core/Error.h"
 
@@ -31,25 +32,63 @@ std::vector<Point<2>> chest_wall_ends(const RegionOfInterest& body) {
   return {*first, *last};
 }
 
-Polyline without_short_edges(Polyline ring, double shortest, double tolerance) {
-  struct Corner {
-    std::size_t place = 0;
-    double off = 0;  // from the edge that is drawn without it
-  };
-  while (ring.size() > 4) {
-    std::optional<Corner> least;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point<2>&before = ring[(i + ring.size() - 1) % ring.size()],
-            &after = ring[(i + 1) % ring.size()];
-      const double shorter = std::min((ring[i] - before).norm(), (after - ring[i]).norm());
-      if (shorter >= shortest) continue;
-      const double off = (closest_point_on_segment(ring[i], before, after) - ring[i]).norm();
-      if (off <= tolerance && (!least || off < least->off)) least = Corner{i, off};
-    }
-    if (!least) break;
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(least->place));
+namespace {
+
+/// A ring of which some corners are left out.
+class ThinnedRing {
+ public:
+  explicit ThinnedRing(const Polyline& ring) : ring_(ring), kept_(ring.size()) {
+    std::iota(kept_.begin(), kept_.end(), std::size_t{0});
   }
-  return ring;
+  std::size_t size() const { return kept_.size(); }
+  /// The shorter of the edges at the k-th corner that is left.
+  double shorter_edge(std::size_t k) const {
+    return std::min((point(k) - point(k + size() - 1)).norm(), (point(k + 1) - point(k)).norm());
+  }
+  /// How far the edge that is drawn without it runs from it, and from those left out beside it.
+  double off_without(std::size_t k) const {
+    const std::size_t before = kept_[(k + size() - 1) % size()], after = kept_[(k + 1) % size()];
+    double off = 0;
+    for (std::size_t i = (before + 1) % ring_.size(); i != after; i = (i + 1) % ring_.size()) {
+      const Point<2> nearest = closest_point_on_segment(ring_[i], ring_[before], ring_[after]);
+      off = std::max(off, (nearest - ring_[i]).norm());
+    }
+    return off;
+  }
+  void leave_out(std::size_t k) { kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(k)); }
+  Polyline corners() const {
+    Polyline corners;
+    for (const std::size_t i : kept_) corners.push_back(ring_[i]);
+    return corners;
+  }
+
+ private:
+  const Point<2>& point(std::size_t k) const { return ring_[kept_[k % size()]]; }
+
+  const Polyline& ring_;
+  std::vector<std::size_t> kept_;
+};
+
+}  // namespace
+
+Polyline without_short_edges(const Polyline& ring, double shortest, double tolerance) {
+  constexpr std::size_t kFewestCorners = 4;
+  ThinnedRing thinned(ring);
+  while (thinned.size() > kFewestCorners) {
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < thinned.size(); ++k) {
+      if (thinned.shorter_edge(k) >= shortest) continue;
+      const double off = thinned.off_without(k);
+      if (off > tolerance || off >= least) continue;
+      least = off;
+      best = k;
+    }
+    if (!std::isfinite(least)) break;
+    thinned.leave_out(best);
+  }
+  Polyline result = thinned.corners();
+  return find_self_intersection(result, true) ? ring : result;
 }
 
 FeatureLine outline_beyond(const Polyline& line, const Box<2>& box, const Point<2>& towards,

@@ -12,9 +12,10 @@ namespace crease {
 /// box's left or right side, that with more of the outline, the uppermost (least y) and the lowermost.
 std::vector<Point<2>> chest_wall_ends(const RegionOfInterest& body);
 
-/// Leaves out corners of a ring with an edge shorter than `shortest`, as long as each lies within `tolerance` of
-/// the edge that is drawn instead: small edges make small triangles, and those fold first. All in mm.
-Polyline without_short_edges(Polyline ring, double shortest, double tolerance);
+/// Leaves out corners of a ring with an edge shorter than `shortest`, as long as all that are left out lie within
+/// `tolerance` of the edges that are drawn instead, and unless the ring would cross itself: small edges make small
+/// triangles, and those fold first. All in mm.
+Polyline without_short_edges(const Polyline& ring, double shortest, double tolerance);
 
 /// A line that cuts a region, as the outline of all that lies on one side of it: continued straight beyond both
 /// ends, and closed round that side outside the box. Triangles there get the label.

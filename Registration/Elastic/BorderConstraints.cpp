@@ -37,14 +37,17 @@ std::set<int> border_control_points(const TriangularBSplineBasis<2>& basis) {
   return border;
 }
 
+void require_quadratic(const TriangularBSplineBasis<2>& basis) {
+  if (basis.degree() == 2) return;
+  throw InvalidInput(message("values on edges: the splines are of degree ", basis.degree(),
+                             "; they are for degree 2."));
+}
+
 }  // namespace
 
 ControlPoints<2> interpolate_on_edges(const TriangularBSplineBasis<2>& basis,
                                       const DisplacementFunction<2>& displacement) {
-  if (basis.degree() != 2) {
-    throw InvalidInput(message("interpolation on edges: the splines are of degree ", basis.degree(),
-                               "; it is for degree 2."));
-  }
+  require_quadratic(basis);
   const SimplexMesh<2>& mesh = basis.net().mesh;
   ControlPoints<2> phi = ControlPoints<2>::Zero(2, basis.num_control_points());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -64,6 +67,7 @@ ControlPoints<2> interpolate_on_edges(const TriangularBSplineBasis<2>& basis,
 
 LinearConstraints border_constraints(const TriangularBSplineBasis<2>& basis,
                                      const ControlPoints<2>& control_points) {
+  require_quadratic(basis);
   const std::set<int> border = border_control_points(basis);
   LinearConstraints constraints;
   constraints.C.resize(std::ssize(border), basis.num_control_points());

@@ -16,6 +16,7 @@ ControlPoints<2> interpolate_on_edges(const TriangularBSplineBasis<2>& basis,
 /// Holds the whole border of a body where that quadratic is, for run_load_steps(): a row for each vertex and
 /// each edge of the border, with a single entry.
 /// @param basis  with the knots of its border collapsed.
+/// @throws InvalidInput unless the basis is of degree 2.
 LinearConstraints border_constraints(const TriangularBSplineBasis<2>& basis,
                                      const ControlPoints<2>& control_points);
 

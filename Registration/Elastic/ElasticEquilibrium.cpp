@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "Registration/Elastic/ElasticPairs.h"
+#include "Registration/Elastic/PairText.h"
 
 namespace crease {
 namespace {
@@ -12,7 +12,6 @@ constexpr double kForceFloor = 1e-13;  // times stiffness and size of the body
 /// Powers of ten: shares of its diagonal by which an indefinite tangent is shifted; the last one is beyond any
 /// need of a matrix that is finite.
 constexpr int kFirstPower = -4, kLastPower = 12;
-constexpr double kLeastUnit = 1e-6;  // of the shift, in units of the mean one
 
 /// Tight enough for Newton's method to go on converging fast.
 constexpr LinearSolverOptions kConjugateGradients = {
@@ -76,20 +75,13 @@ void ElasticEquilibrium::assemble() {
   solver_.hessian_changed();
 }
 
-/// Shifts an indefinite tangent until it is positive definite; it stays shifted.
+/// Shifts an indefinite tangent until it is positive definite.
 std::optional<Eigen::VectorXd> ElasticEquilibrium::solve(const Eigen::VectorXd& rhs,
-                                                         bool& unstable) {
+                                                         bool& indefinite) {
   auto y = solver_.solve(rhs, 0);
-  unstable = !y;
-  if (y) return y;
-  Eigen::SparseMatrix<double>& tangent = solver_.hessian();
-  const Eigen::VectorXd diagonal = tangent.diagonal();
-  const Eigen::VectorXd size = diagonal.cwiseAbs();
-  const Eigen::VectorXd unit = size.cwiseMax(kLeastUnit * size.mean());
+  indefinite = !y;
   for (int power = kFirstPower; !y && power <= kLastPower; ++power) {
-    tangent.diagonal() = diagonal + std::pow(10.0, power) * unit;
-    solver_.hessian_changed();
-    y = solver_.solve(rhs, 0);
+    y = solver_.solve(rhs, std::pow(10.0, power));
   }
   return y;
 }
@@ -102,14 +94,14 @@ bool ElasticEquilibrium::stable() {
   return SparseCholesky().factor(tangent);
 }
 
-std::optional<std::string> ElasticEquilibrium::predict(double share, bool& unstable) {
+std::optional<std::string> ElasticEquilibrium::predict(double share, bool& indefinite) {
   const RowMatrix& offset = null_space_.offset();
   const Eigen::VectorXd start =
       share * Eigen::Map<const Eigen::VectorXd>(offset.data(), offset.size());
   assemble();
   Eigen::VectorXd force = tangent_.selfadjointView<Eigen::Lower>() * start;
   if (options_.corrector == LoadCorrector::kNewton) force += state_.force;
-  const auto y = solve(-null_space_.apply_transpose(force), unstable);
+  const auto y = solve(-null_space_.apply_transpose(force), indefinite);
   if (!y) return "the tangent is singular";
   const Eigen::VectorXd step = start + null_space_.apply(*y);
   state_ = evaluate(state_.phi + step.reshaped(2, state_.phi.cols()));
@@ -150,7 +142,7 @@ std::optional<std::string> ElasticEquilibrium::correct(const SplineBasis<2>& bas
                      " iterations; forces are least balanced near ", worst_place(basis));
     }
     assemble();
-    const auto y = solve(-state_.reduced, record.unstable);
+    const auto y = solve(-state_.reduced, record.indefinite_tangent);
     if (!y || !search(null_space_.apply(*y))) {
       return message("no step lowers the stored energy; forces are least balanced near ",
                      worst_place(basis));
@@ -166,7 +158,7 @@ std::optional<std::string> ElasticEquilibrium::advance(double share, const Splin
   const State before = state_;
   const int factorizations = num_factorizations();
   record = {};
-  auto failure = predict(share, record.unstable);
+  auto failure = predict(share, record.indefinite_tangent);
   if (!failure && options_.corrector == LoadCorrector::kNewton) failure = correct(basis, record);
   if (!failure && !(state_.least.value > 0)) failure = fold_text();
   record.factorizations = num_factorizations() - factorizations;

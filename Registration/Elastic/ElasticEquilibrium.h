@@ -14,7 +14,7 @@ namespace crease {
 /// The state of a body under constraints, with what is known of it, and the steps that load it further.
 ///
 /// Where the reduced tangent H = N^T K N is not positive definite, the body can buckle, and a Newton step may
-/// lead uphill or to a saddle. Then H + mu D takes its place, D = |diag(H)| (not below 1e-6 of its mean) and
+/// lead uphill or to a saddle. Then H + mu D takes its place (DampedSolver), and
 /// mu the first of 1e-4, 1e-3, .. for which a Cholesky factor exists: one does in the end, for large mu makes
 /// the diagonal dominate. The step is then one of descent for W, as it would be with a shifted LDL^T factor.
 /// All that such a factor of H itself would add is the number of negative pivots, and all that is asked here
@@ -53,8 +53,8 @@ class ElasticEquilibrium {
   };
   State evaluate(ControlPoints<2> phi) const;
   void assemble();
-  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& rhs, bool& unstable);
-  std::optional<std::string> predict(double share, bool& unstable);
+  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& rhs, bool& indefinite);
+  std::optional<std::string> predict(double share, bool& indefinite);
   std::optional<std::string> correct(const SplineBasis<2>& basis, LoadStepRecord& record);
   bool search(const Eigen::VectorXd& step);
   std::string fold_text() const;

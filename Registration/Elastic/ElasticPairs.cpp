@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Core/Error.h"
+#include "Registration/Elastic/PairText.h"
 #include "Registration/Elastic/SnapWarnings.h"
 #include "Transforms/Domains/ArcLength.h"
 #include "Transforms/Domains/MeshTopology.h"

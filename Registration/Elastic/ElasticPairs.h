@@ -9,13 +9,8 @@
 
 namespace crease {
 
-/// As "(12.5, 3) mm", for messages.
-inline std::string place_text(const Point<2>& p) {
-  return message("(", p.x(), ", ", p.y(), ") mm");
-}
-
 /// Moves fixed points that lie outside the domain, but within `snap_mm` of it, onto its border.
-/// @return a warning for each.
+/// @return a warning for each that lies clearly outside, and one for those that hardly do.
 /// @throws InvalidInput naming the pair and its distance when it lies farther out.
 std::vector<std::string> snap_to_domain(Landmarks<2>& pairs, const SplineBasis<2>& basis,
                                         double snap_mm);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "Core/Error.h"
 #include "Registration/Elastic/BodyOutline.h"
 #include "Registration/Elastic/ImageImprovement.h"
 #include "Transforms/CompositeTransform.h"
@@ -19,11 +20,9 @@ constexpr double kShortEdgeTolerance = 3;  // times that of the outline
 /// About that of the mesh: of equilateral triangles that fill the region.
 double edge_length(const RegionOfInterest& region, const ElasticDomainOptions& options) {
   if (options.num_triangles == 0) {
-    return options.edge_length > 0 ? options.edge_length : region.bounds().size().maxCoeff() / 12;
+    return options.edge_length > 0 ? options.edge_length : default_edge_length(region.bounds());
   }
-  double area = 0;
-  for (const Polyline& ring : region.rings()) area += signed_area(ring);
-  return std::sqrt(4 / std::sqrt(3.0) * std::abs(area) / options.num_triangles);
+  return std::sqrt(4 / std::sqrt(3.0) * region.area() / options.num_triangles);
 }
 
 /// One registration, stage by stage.
@@ -45,13 +44,16 @@ class ElasticRun {
     const std::shared_ptr<const BoundGrid<2>> grid = domain_.basis->bind(fixed_.raster());
     add_time("binding");
     measure(grid, result_.improvement_by_pairs);
-    if (options_.refine && result_.failure.empty() && !cancelled_) {
+    result_.transform = result_.deformation;
+    if (!options_.refine || !result_.failure.empty() || cancelled_) return std::move(result_);
+    try {
       refine(pairs, contour, grid);
-      add_time("refinement");
-      measure(grid, result_.improvement_by_images);
-    } else {
-      result_.transform = result_.deformation;
+    } catch (const SolverError& error) {
+      result_.failure = message(error.what(), " The result is what the pairs do, not refined.");
+      return std::move(result_);
     }
+    add_time("refinement");
+    measure(grid, result_.improvement_by_images);
     return std::move(result_);
   }
 
@@ -73,7 +75,8 @@ class ElasticRun {
       if (cancelled_) result_.failure = "cancelled";
     } catch (const NoEquilibrium& error) {
       result_.load = error.last_state();
-      result_.failure = error.what();
+      result_.failure =
+          message(error.what(), " The result is the last equilibrium on the way, not refined.");
     }
     result_.factorizations = result_.load.factorizations;
     result_.deformation =

@@ -61,8 +61,8 @@ struct ElasticRegistrationResult {
   bool images_equal = false;  ///< before; improvements are undefined then
   /// Per cent of |T - R|^2 (ImageImprovement), after the pairs and after the refinement.
   std::optional<double> improvement_by_pairs, improvement_by_images;
-  /// Empty: in equilibrium under the whole load. Else what happened; the deformation is the last one in
-  /// equilibrium, and not refined.
+  /// Empty: in equilibrium under the whole load, and refined if that was wanted. Else what happened, and what the
+  /// result is instead: the last equilibrium, not refined.
   std::string failure;
   int factorizations = 0;
   std::map<std::string, double>

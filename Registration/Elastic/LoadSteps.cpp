@@ -62,7 +62,7 @@ void warn_of_instability(LoadStepResult& result) {
     return;
   }
   for (const LoadStepRecord& record : result.steps) {
-    if (!record.unstable) continue;
+    if (!record.indefinite_tangent) continue;
     result.warnings.push_back(message("unstable equilibrium on the way, at load fraction ",
                                       record.fraction,
                                       ": beyond it the body may have buckled one way or another."));
@@ -136,13 +136,14 @@ LandmarkOptions pair_options() {
 LinearConstraints pair_constraints(const ElasticDeformation& deformation, const Landmarks<2>& pairs,
                                    NullSpaceKind kind, std::vector<int>& independent,
                                    std::vector<std::string>& warnings) {
-  const auto found = make_landmark_constraints<2>(pairs, *deformation.basis, deformation.affine,
-                                                  pair_options(), kind);
+  const LandmarkOptions options = pair_options();
+  const auto found =
+      make_landmark_constraints<2>(pairs, *deformation.basis, deformation.affine, options, kind);
   warnings.insert(warnings.end(), found.notes.begin(), found.notes.end());
   independent = found.null_space->independent_rows();
   LinearConstraints constraints = found.null_space->constraints();
   for (std::size_t j = 0; j < constraints.names.size(); ++j) {
-    constraints.names[j] = pair_options().words.one(static_cast<int>(j));
+    constraints.names[j] = options.words.one(static_cast<int>(j));
   }
   return constraints;
 }

@@ -60,7 +60,7 @@ struct LoadStepRecord {
   int factorizations = 0;
   /// The last tangent of the step was not positive definite: it ended in an unstable equilibrium, or close to
   /// where the body becomes unstable.
-  bool unstable = false;
+  bool indefinite_tangent = false;
 
   double residual() const { return residuals.empty() ? 0.0 : residuals.back(); }
 };
@@ -83,7 +83,7 @@ struct LoadStepResult {
   /// Of a quadrature that is not exact: relative_tangent_difference() from one that is.
   std::optional<double> quadrature_error;
   int factorizations = 0;
-  int failures = 0;  ///< steps that were halved
+  int failures = 0;  ///< steps that failed
   std::vector<std::string> warnings;
 };
 
@@ -134,8 +134,8 @@ struct ElasticDeformation {
   ElasticQuadrature quadrature = ElasticQuadrature::kCells;
 };
 
-/// The same for pairs of points; `reactions` has one row per pair, warnings say which pairs were moved onto
-/// the border and which are held by suspicious forces.
+/// The same for pairs of points; `reactions` has one row per pair, warnings say that pairs were moved onto
+/// the border, and which are held by suspicious forces.
 /// @throws InvalidInput also when a pair lies outside the domain, contour pairs cross, or a connected part of
 /// the domain holds fewer than two independent pairs.
 LoadStepResult deform_elastically(const ElasticDeformation& deformation,

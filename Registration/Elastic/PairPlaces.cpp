@@ -1,12 +1,12 @@
 #include "Registration/Elastic/PairPlaces.h"
 
 #include <algorithm>
-#include <iomanip>
 #include <numeric>
 #include <optional>
 
 #include "Core/Error.h"
 #include "Core/Quantiles.h"
+#include "Registration/Elastic/PairText.h"
 #include "Registration/Elastic/SnapWarnings.h"
 #include "Transforms/Domains/ArcLength.h"
 
@@ -18,16 +18,6 @@ constexpr std::size_t kNeighbours = 5;
 std::string name_of(const Landmarks<2>& pairs, std::size_t i) {
   const bool named = i < pairs.names.size() && !pairs.names[i].empty();
   return named ? message("pair ", i + 1, " (", pairs.names[i], ")") : message("pair ", i + 1);
-}
-
-std::string fixed_text(double value) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << value;
-  return text.str();
-}
-
-std::string place(const Point<2>& p) {
-  return "(" + fixed_text(p.x()) + ", " + fixed_text(p.y()) + ") mm";
 }
 
 Point<2> nearest_on_rings(const RegionOfInterest& region, const Point<2>& p) {
@@ -51,17 +41,17 @@ std::vector<std::size_t> neighbours_of(const Landmarks<2>& pairs, std::size_t i)
   return others;
 }
 
-/// An interior pair that lies on a contour pair.
+/// A pair that lies on one of those found.
 struct NearPair {
   std::size_t pair;
   double distance;  // mm
   const char* image;
 };
 
-std::optional<NearPair> interior_pair_at(const Landmarks<2>& pairs, std::size_t c,
-                                         const std::vector<char>& on_contour, double near_mm) {
+std::optional<NearPair> other_pair_at(const Landmarks<2>& pairs, std::size_t c,
+                                      const std::vector<char>& is_found, double near_mm) {
   for (std::size_t i = 0; i < pairs.fixed.size(); ++i) {
-    if (on_contour[i]) continue;
+    if (is_found[i]) continue;
     const double fixed = (pairs.fixed[i] - pairs.fixed[c]).norm();
     const double moving = (pairs.moving[i] - pairs.moving[c]).norm();
     if (fixed <= near_mm) return NearPair{i, fixed, "fixed"};
@@ -116,7 +106,7 @@ std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfI
     const Point<2> border = nearest_on_rings(body, q);
     const double distance = (border - q).norm();
     if (distance < kOnBorder) continue;
-    const std::string point = message(name_of(pairs, i), ": the moving point ", place(q));
+    const std::string point = message(name_of(pairs, i), ": the moving point ", place_text(q));
     if (distance > snap_mm) {
       throw InvalidInput(message(point, " lies ", fixed_text(distance), " mm outside ", name,
                                  "; correct it or leave the pair out."));
@@ -127,22 +117,21 @@ std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfI
   return warnings.list();
 }
 
-std::vector<std::string> leave_out_contour_pairs_at_others(Landmarks<2>& pairs,
-                                                           std::vector<int>& contour,
-                                                           double near_mm) {
+std::vector<std::string> leave_out_found_pairs(Landmarks<2>& pairs, std::vector<int>& found,
+                                               double near_mm) {
   std::vector<std::string> warnings;
-  std::vector<char> on_contour(pairs.fixed.size(), 0), left_out(pairs.fixed.size(), 0);
-  for (int c : contour) on_contour[static_cast<std::size_t>(c)] = 1;
-  for (int number : contour) {
+  std::vector<char> is_found(pairs.fixed.size(), 0), left_out(pairs.fixed.size(), 0);
+  for (int c : found) is_found[static_cast<std::size_t>(c)] = 1;
+  for (int number : found) {
     const auto c = static_cast<std::size_t>(number);
-    const auto at = interior_pair_at(pairs, c, on_contour, near_mm);
+    const auto at = other_pair_at(pairs, c, is_found, near_mm);
     if (!at) continue;
     left_out[c] = 1;
     warnings.push_back(message(name_of(pairs, at->pair), " lies ", fixed_text(at->distance),
                                " mm from ", name_of(pairs, c), " in the ", at->image,
-                               " image; the latter, found by arc length, was left out."));
+                               " image; the latter, found in the images, was left out."));
   }
-  renumber(contour, left_out);
+  renumber(found, left_out);
   erase_marked(pairs.fixed, left_out);
   erase_marked(pairs.moving, left_out);
   erase_marked(pairs.names, left_out);
@@ -165,7 +154,7 @@ std::vector<std::string> strange_pairs(const Landmarks<2>& pairs, double width_m
     }
     const double unlike = (pairs.moving[i] - pairs.fixed[i] - usual).norm();
     if (unlike <= share * width_mm) continue;
-    warnings.push_back(message(name_of(pairs, i), " at ", place(pairs.fixed[i]), " moves ",
+    warnings.push_back(message(name_of(pairs, i), " at ", place_text(pairs.fixed[i]), " moves ",
                                fixed_text(unlike), " mm unlike its neighbours; it may be wrong."));
   }
   return warnings;

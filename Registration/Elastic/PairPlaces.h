@@ -25,14 +25,13 @@ std::vector<std::string> snap_moving_points(Landmarks<2>& pairs, const RegionOfI
                                             const std::string& name = "the moving image's body",
                                             double snap_mm = 2);
 
-/// Leaves out the contour pairs that an interior pair lies on, in either image: what was found by arc length
-/// yields to what somebody has seen, for the two would tear the tissue between them.
-/// @param contour  numbers of the contour pairs; changed to match.
+/// Leaves out those of the pairs found in the images that any other lies on, in either image: a given pair, or one
+/// found before. The two would tear the tissue between them.
+/// @param found    numbers of the pairs in question; changed to match.
 /// @param near_mm  how near is on it.
 /// @return a warning for each.
-std::vector<std::string> leave_out_contour_pairs_at_others(Landmarks<2>& pairs,
-                                                           std::vector<int>& contour,
-                                                           double near_mm = 2);
+std::vector<std::string> leave_out_found_pairs(Landmarks<2>& pairs, std::vector<int>& found,
+                                               double near_mm = 2);
 
 /// Warnings of pairs whose displacement is unlike the median of their five neighbours' by more than a share
 /// of the body's width.

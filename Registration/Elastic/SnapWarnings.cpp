@@ -1,19 +1,13 @@
 #include "Registration/Elastic/SnapWarnings.h"
 
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
+
+#include "Registration/Elastic/PairText.h"
 
 namespace crease {
 namespace {
 
 constexpr double kHardly = 0.5;  // mm
-
-std::string fixed_text(double mm) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << mm;
-  return text.str();
-}
 
 }  // namespace
 

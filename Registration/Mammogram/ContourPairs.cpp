@@ -39,6 +39,9 @@ void check(const Polyline& fixed, const Polyline& moving, const ContourPairOptio
       throw InvalidInput(message("contour pairs: the contour of the ", name, " image is empty."));
     }
   }
+  if (options.known.fixed.size() != options.known.moving.size()) {
+    throw InvalidInput("contour pairs: known pairs need as many moving points as fixed ones.");
+  }
   if (!options.stretch) return;
   const double first = options.stretch(0), end = options.stretch(1);
   bool good = std::abs(first) <= kRounding && std::abs(end - 1) <= kRounding;

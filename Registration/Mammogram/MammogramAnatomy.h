@@ -36,7 +36,7 @@ struct MammogramAnatomy {
   BreastSegmentation breast;  ///< the mask is on the raster of `frame.image`
   SkinContour skin;
   std::optional<PectoralMuscle> pectoral;
-  /// Outline of the breast: the smoothed skin line, closed along the frame, or straight where that would cross it.
+  /// The breast: SkinContour::outline, closed along the frame, or straight where that would cross it.
   Polyline region;
   bool mirrored = false;              ///< left and right are swapped
   std::vector<std::string> notes;     ///< of all steps, for the user

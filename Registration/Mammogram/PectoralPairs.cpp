@@ -8,9 +8,12 @@
 namespace crease {
 namespace {
 
+constexpr double kFarthestFromSkin = 3;  // mm
+
 bool begins_at_the_skin(const MammogramAnatomy& anatomy) {
-  return anatomy.pectoral && distance_to_polyline(anatomy.skin.points, false,
-                                                  anatomy.pectoral->line.front()) <= kFromSkinMm;
+  return anatomy.pectoral &&
+         distance_to_polyline(anatomy.skin.points, false, anatomy.pectoral->line.front()) <=
+             kFarthestFromSkin;
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ std::pair<double, double> draw_warp(PhantomImages<Dim>& phantom, const PhantomOp
       covering_lattice<Dim>(raster, options.size / 8.0), 3);
   ControlPoints<Dim> control_points = draw_control_points<Dim>(
       basis->num_control_points(), random_stream(options, Stream::kMotion));
-  phantom.displacement = sample_displacement<Dim>(raster, spline_map<Dim>(basis, control_points));
+  phantom.displacement = displacement_of<Dim>(raster, spline_map<Dim>(basis, control_points));
   double factor = kLargestShare * options.size / largest_displacement(phantom.displacement);
   std::pair<double, double> determinants;
   for (;; factor = 0.9) {

@@ -84,8 +84,8 @@ std::pair<Point<2>, Matrix<2>> MammogramDeformation::sample(const Point<2>& x) c
       jacobian.row(axis) += wave.amplitude_mm * std::cos(argument) * wave.wave_vector.transpose();
     }
   }
-  if (further_ && further_->in_domain(x)) {
-    const auto more = further_->sample(x);
+  if (!further_) return {y, jacobian};
+  if (const auto more = further_->sample(x); more.in_domain) {
     y += more.point - x;
     jacobian += more.jacobian - Matrix<2>::Identity();
   }

@@ -51,7 +51,7 @@ struct CheckedMotion {
   std::pair<double, double> determinants;
 };
 
-// A motion of the tissue, and its determinants; those of an elastic body also where it is integrated.
+// A motion of the tissue, and its determinants.
 CheckedMotion checked(const MammogramMotion& motion,
                       std::shared_ptr<const Transform<2>> further = nullptr) {
   MammogramDeformation deformation(motion, std::move(further));
@@ -59,7 +59,7 @@ CheckedMotion checked(const MammogramMotion& motion,
   return {std::move(deformation), determinants};
 }
 
-// Nothing if there is no equilibrium.
+// Determinants also at the points of quadrature. Nothing if there is no equilibrium.
 std::optional<CheckedMotion> follow(const MammogramBody& body, const MammogramMotion& motion) {
   try {
     const auto equilibrium = body.follow(motion);
@@ -83,6 +83,12 @@ CheckedMotion draw_deformation(const MammogramPhantomOptions& options) {
     const MammogramMotion motion = drawn.scaled(std::ldexp(1.0, -halvings));
     const auto found = body ? follow(*body, motion) : checked(motion, options.further);
     if (found && found->determinants.first > kSmallestDeterminant) return *found;
+  }
+  if (body) {
+    throw SolverError(message("mammogram phantom: under no motion of seed ", options.seed,
+                              " the elastic body finds an equilibrium that squeezes no tissue to a "
+                              "determinant of ",
+                              kSmallestDeterminant, " or less; take another seed"));
   }
   throw InvalidInput(
       message("mammogram phantom: the further map squeezes tissue to a determinant of ",
@@ -201,7 +207,7 @@ MammogramPhantom make_mammogram_phantom(const MammogramPhantomOptions& options) 
   describe_moving(moving_tissue.ducts(), options.view, map, phantom.moving);
   phantom.truth = map;
   phantom.inverse = [map](const Point<2>& y) { return map.inverse(y); };
-  phantom.displacement = sample_displacement<2>(raster, map);
+  phantom.displacement = displacement_of<2>(raster, map);
   phantom.landmarks = mammogram_landmarks(phantom.fixed, phantom.moving, map);
   phantom.parameters = {{"spacing_mm", raster.spacing.x()},
                         {"gain", response.gain},

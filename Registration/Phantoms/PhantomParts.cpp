@@ -51,8 +51,8 @@ std::shared_ptr<const PowerLawTexture<Dim>> make_texture(const PhantomOptions& o
 }
 
 template <int Dim>
-DisplacementField<Dim> sample_displacement(
-    const Raster<Dim>& raster, const std::function<Point<Dim>(const Point<Dim>&)>& map) {
+DisplacementField<Dim> displacement_of(const Raster<Dim>& raster,
+                                       const std::function<Point<Dim>(const Point<Dim>&)>& map) {
   DisplacementField<Dim> field(raster, Vector<Dim>::Zero());
   for_each_sample(raster, [&](std::size_t position, const Point<Dim>& x) {
     field.values()[position] = map(x) - x;
@@ -102,7 +102,7 @@ void sample_images(PhantomImages<Dim>& phantom,
 #define CREASE_INSTANTIATE(Dim)                                                                  \
   template Raster<Dim> phantom_raster<Dim>(int);                                                 \
   template std::shared_ptr<const PowerLawTexture<Dim>> make_texture<Dim>(const PhantomOptions&); \
-  template DisplacementField<Dim> sample_displacement<Dim>(                                      \
+  template DisplacementField<Dim> displacement_of<Dim>(                                          \
       const Raster<Dim>&, const std::function<Point<Dim>(const Point<Dim>&)>&);                  \
   template std::pair<double, double> determinant_range<Dim>(const DisplacementField<Dim>&);      \
   template void sample_images<Dim>(PhantomImages<Dim>&,                                          \

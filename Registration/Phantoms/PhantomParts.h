@@ -24,8 +24,8 @@ std::shared_ptr<const PowerLawTexture<Dim>> make_texture(const PhantomOptions& o
 
 /// T(x) - x at every sample.
 template <int Dim>
-DisplacementField<Dim> sample_displacement(const Raster<Dim>& raster,
-                                           const std::function<Point<Dim>(const Point<Dim>&)>& map);
+DisplacementField<Dim> displacement_of(const Raster<Dim>& raster,
+                                       const std::function<Point<Dim>(const Point<Dim>&)>& map);
 
 /// Smallest and largest det of the map's central differences over two pixels.
 template <int Dim>

@@ -91,7 +91,7 @@ Phantom make_rigid_phantom(const RigidPhantomPlan& plan, const PhantomOptions& o
     map = std::make_shared<RigidBodiesMap>(jittered(plan, options, scale), plan.anchors,
                                            plan.spline_spacing_mm, plan.turn_share);
     phantom.truth = [map](const Point<2>& x) { return (*map)(x); };
-    phantom.displacement = sample_displacement(phantom_raster<2>(options.size), phantom.truth);
+    phantom.displacement = displacement_of(phantom_raster<2>(options.size), phantom.truth);
     determinants = determinant_range(phantom.displacement);
     if (determinants.first >= kSmallestDeterminant) break;
   }

@@ -32,6 +32,11 @@ class ElasticFixture : public CommandFixture {
   }
   static void TearDownTestSuite() { files_.reset(); }
 
+  /// A file of pairs, by rows of four coordinates.
+  std::string pairs(const std::string& rows) const {
+    return folder.write("pairs.csv", "fixed_x,fixed_y,moving_x,moving_y\n" + rows);
+  }
+
   static std::string file(const std::string& name) { return (*files_ / name).string(); }
 
   /// `crease elastic` of the two images with a coarse mesh and few steps.

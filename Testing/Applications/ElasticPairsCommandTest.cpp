@@ -21,12 +21,7 @@ std::vector<std::string> warnings_of(const nlohmann::json& result) {
   return result["warnings"].get<std::vector<std::string>>();
 }
 
-class ElasticPairsCommand : public testing::ElasticFixture {
- protected:
-  std::string pairs(const std::string& rows) const {
-    return folder.write("pairs.csv", "fixed_x,fixed_y,moving_x,moving_y\n" + rows);
-  }
-};
+class ElasticPairsCommand : public testing::ElasticFixture {};
 
 /// Five pairs that move by (1, 0).
 constexpr const char* kShift = "10,10,11,10\n50,10,51,10\n10,50,11,50\n50,50,51,50\n30,30,31,30\n";

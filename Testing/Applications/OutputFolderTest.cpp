@@ -74,7 +74,10 @@ TEST(OutputFolder, RemovesEarlierFilesByTheirNumbers) {
   const std::vector<std::string> others = {"warped.mha",    "warped-2.mha", "warped-3",
                                            "warped-03.mha", "warped-b.mha", "moving-3.mha"};
   for (const std::string& name : others) folder.write(name, "kept");
-  OutputFolder(folder.path()).remove_numbered("warped", 3);
+  folder.write("warped-7.mha", "input");
+  const std::string input = (folder / "warped-7.mha").string();
+  OutputFolder(folder.path(), {input}).remove_numbered("warped", 3);
+  EXPECT_TRUE(std::filesystem::exists(input));
   for (const char* name : {"warped-3.mha", "warped-12.nii.gz"}) {
     EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
   }

@@ -30,7 +30,7 @@ TEST(Quantiles, MedianOfAnEvenNumberIsTheUpperOfTheTwo) {
 }
 
 TEST(Quantiles, LeavesTheCallersValuesAsTheyAre) {
-  const std::vector<double> values = shuffled(9);
+  std::vector<double> values = shuffled(9);
   median(values);
   EXPECT_EQ(values, shuffled(9));
 }

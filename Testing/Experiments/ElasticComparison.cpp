@@ -63,8 +63,8 @@ class PairComparison {
       figures = carry(bases_[space], scene);
       band[space] = figures["tre_band_mm"];
       thresholds.push_back({"pair error (mm)" + with, figures["pair_error_mm"], 1e-6});
-      thresholds.push_back({"smallest determinant" + with, figures["min_det"], 1e-3, true});
-      thresholds.push_back({"improvement (%)" + with, figures["improvement_percent"], 0, true});
+      thresholds.push_back({"smallest determinant" + with, figures["min_det"], 0.1, true});
+      thresholds.push_back({"improvement (%)" + with, figures["improvement_percent"], 50, true});
     }
     if (fine_) of_seed["sixteen times as fine"] = carry(fine_, scene);
     better_than_smooth_ += band[kCreases] < band[kNoCreases];

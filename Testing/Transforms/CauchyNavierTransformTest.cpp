@@ -69,7 +69,8 @@ TYPED_TEST(CauchyNavierOf, TakesItsValuesAtTheCentres) {
 // knows: R = 180 pi (1 - nu) E in the plane, 1152 pi (1 - nu) E in space.
 TYPED_TEST(CauchyNavierOf, SolvesNaviersEquation) {
   constexpr int Dim = TestFixture::kDim;
-  constexpr double kStep = 1e-3, nu = TestFixture::kRatio;
+  constexpr double kStep = 1e-3;
+  const double nu = TestFixture::kRatio;
   const auto transform = TestFixture::moved();
   const Eigen::MatrixXd E =
       *transform.roughness_matrix() / ((Dim == 2 ? 180 : 1152) * std::numbers::pi * (1 - nu));

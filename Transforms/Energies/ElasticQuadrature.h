@@ -6,10 +6,10 @@
 
 namespace crease {
 
-/// Where an elastic energy of triangular B-splines is integrated.
+/// Where an elastic energy is integrated.
 enum class ElasticQuadrature {
-  kCells,  ///< in every cell of the knot lines, where the splines are polynomials: exact
-  /// At 12 points per triangle, whatever its cells: some ten times fewer points, but knot lines between
+  kCells,  ///< in every cell, where splines are polynomials: exact for St. Venant-Kirchhoff tissue
+  /// Of triangular B-splines: at 12 points per triangle, whatever its cells: some ten times fewer points, but knot lines between
   /// them are not seen, and the stiffness is off by some per cent.
   kCheap
 };

@@ -273,10 +273,10 @@ TEST(LoadSteps, FlagUnstableEquilibria) {
     EXPECT_EQ(straight.fraction, 1);
     EXPECT_LT(straight.steps.back().residual(), 1e-8);
     EXPECT_TRUE(straight.unstable);
+    EXPECT_FALSE(straight.steps.front().indefinite_tangent);
+    EXPECT_TRUE(straight.steps.back().indefinite_tangent);
     EXPECT_THAT(straight.warnings, Contains(HasSubstr("unstable equilibrium at load fraction 1")));
   }
-  EXPECT_FALSE(deform_elastically(column(0.06), {.steps = 5}).steps.front().unstable);
-  EXPECT_TRUE(deform_elastically(column(0.06), {.steps = 5}).steps.back().unstable);
 }
 
 // Pushed aside a little, it leaves the straight equilibrium for one with less energy.

@@ -71,7 +71,7 @@ TEST(SnapMovingPoints, MovesThoseJustOutsideAndRefusesOthers) {
 TEST(ContourPairsAtOthers, AreLeftOut) {
   auto pairs = shifted_pairs();
   std::vector<int> contour = {0, 1, 2, 5};
-  EXPECT_THAT(leave_out_contour_pairs_at_others(pairs, contour), IsEmpty());
+  EXPECT_THAT(leave_out_found_pairs(pairs, contour), IsEmpty());
   EXPECT_EQ(pairs.size(), 9);
 
   pairs.names = {"contour 1", "contour 2", "contour 3", "", "", "contour 4", "", "", ""};
@@ -79,7 +79,7 @@ TEST(ContourPairsAtOthers, AreLeftOut) {
   pairs.fixed[8] = pairs.fixed[2] + Vector<2>(0, 2.1);
   pairs.moving[6] = pairs.moving[5] + Vector<2>(1, 0);
   const auto before = pairs;
-  const auto warnings = leave_out_contour_pairs_at_others(pairs, contour);
+  const auto warnings = leave_out_found_pairs(pairs, contour);
   EXPECT_THAT(warnings,
               ::testing::ElementsAre(
                   HasSubstr("pair 5 lies 1.90 mm from pair 2 (contour 2) in the fixed image"),

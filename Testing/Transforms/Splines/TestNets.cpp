@@ -204,6 +204,16 @@ KnotNet<2> ring_net(int degree, double alpha, bool body) {
   return net;
 }
 
+std::vector<KnotNet<2>> nets_of_all_degrees() {
+  std::vector<KnotNet<2>> all;
+  for (int degree = 1; degree <= 5; ++degree) {
+    all.push_back(jittered_net(4, 4, degree, 0.4, degree));
+    all.push_back(straight_crease_net(degree, 0.4));
+  }
+  all.push_back(collapsed_knots(jittered_mesh(4, 4, 1), 3));
+  return all;
+}
+
 KnotNet<3> tetrahedral_net(int degree, double alpha) {
   KnotNet<3> net;
   net.degree = degree;

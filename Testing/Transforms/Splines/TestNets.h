@@ -29,6 +29,9 @@ KnotNet<2> straight_crease_net(int degree, double alpha);
 /// inside or no body.
 KnotNet<2> ring_net(int degree, double alpha, bool body);
 
+/// Jittered nets and straight creases of degree 1 to 5, and one with its knots at the vertices.
+std::vector<KnotNet<2>> nets_of_all_degrees();
+
 /// Twelve tetrahedra round an inner vertex, with border knots outside the cube.
 KnotNet<3> tetrahedral_net(int degree, double alpha);
 

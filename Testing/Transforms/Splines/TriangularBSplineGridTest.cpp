@@ -93,18 +93,8 @@ Field random_forces(const BoundGrid<2>& grid, int seed) {
   return forces;
 }
 
-std::vector<KnotNet<2>> nets() {
-  std::vector<KnotNet<2>> all;
-  for (int degree = 1; degree <= 5; ++degree) {
-    all.push_back(testing::jittered_net(4, 4, degree, 0.4, degree));
-    all.push_back(testing::straight_crease_net(degree, 0.4));
-  }
-  all.push_back(testing::collapsed_knots(testing::jittered_mesh(4, 4, 1), 3));
-  return all;
-}
-
 TEST(TriangularBSplineGrid, MapsAsPointEvaluationDoes) {
-  for (const auto& net : nets()) {
+  for (const auto& net : testing::nets_of_all_degrees()) {
     const TriangularBSplineBasis<2> basis(net);
     const auto points = random_points(basis.num_control_points(), 1);
     for (const auto& raster : {turned_raster(false), turned_raster(true), aligned_raster()}) {
@@ -138,7 +128,7 @@ TEST(TriangularBSplineGrid, MapsAsPointEvaluationDoes) {
 }
 
 TEST(TriangularBSplineGrid, AdjointIsTheTransposedMap) {
-  for (const auto& net : nets()) {
+  for (const auto& net : testing::nets_of_all_degrees()) {
     const TriangularBSplineBasis<2> basis(net);
     const auto points = random_points(basis.num_control_points(), 2);
     const auto grid = basis.bind(turned_raster(false));

@@ -9,16 +9,6 @@
 namespace crease {
 namespace {
 
-std::vector<KnotNet<2>> nets() {
-  std::vector<KnotNet<2>> all;
-  for (int degree = 1; degree <= 5; ++degree) {
-    all.push_back(testing::jittered_net(4, 4, degree, 0.4, degree));
-    all.push_back(testing::straight_crease_net(degree, 0.4));
-  }
-  all.push_back(testing::collapsed_knots(testing::jittered_mesh(4, 4, 1), 3));
-  return all;
-}
-
 Eigen::MatrixXd random_points(int rows, int columns) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -55,7 +45,7 @@ Eigen::VectorXd jet_at(const TriangularBSplineBasis<2>& basis, const Eigen::Matr
 
 TEST(TriangularBSplineSampler, AgreesWithTheFunctionsOneByOne) {
   const auto x = places(400);
-  for (const auto& net : nets()) {
+  for (const auto& net : testing::nets_of_all_degrees()) {
     const TriangularBSplineBasis<2> basis(net);
     for (const int rows : {2, 3}) {
       const Eigen::MatrixXd phi = random_points(rows, basis.num_control_points());

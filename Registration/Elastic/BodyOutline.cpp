@@ -55,6 +55,10 @@ class ThinnedRing {
     }
     return off;
   }
+  /// What leaving it out adds to the ring's area, or takes from it.
+  double area_without(std::size_t k) const {
+    return std::abs(signed_area(Polyline{point(k + size() - 1), point(k), point(k + 1)}));
+  }
   void leave_out(std::size_t k) { kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(k)); }
   Polyline corners() const {
     Polyline corners;
@@ -79,9 +83,9 @@ Polyline without_short_edges(const Polyline& ring, double shortest, double toler
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < thinned.size(); ++k) {
       if (thinned.shorter_edge(k) >= shortest) continue;
-      const double off = thinned.off_without(k);
-      if (off > tolerance || off >= least) continue;
-      least = off;
+      const double area = thinned.area_without(k);
+      if (area >= least || thinned.off_without(k) > tolerance) continue;
+      least = area;
       best = k;
     }
     if (!std::isfinite(least)) break;

@@ -438,9 +438,24 @@ class DoubleWell final : public ObjectiveFunction {
   }
 };
 
-TEST(GaussNewton, SaysThatTheHessianIsNotPositiveDefinite) {
+// Between the wells the Hessian is negative; damping by its absolute diagonal makes it positive.
+TEST(GaussNewton, LeavesAHilltopByDamping) {
   DoubleWell function;
-  EXPECT_THAT([&] { GaussNewton().minimize(function, Eigen::VectorXd::Constant(1, 0.1)); },
+  EXPECT_NEAR(GaussNewton().minimize(function, Eigen::VectorXd::Constant(1, 0.1)).x[0], 1, 1e-4);
+}
+
+TEST(GaussNewton, SaysThatTheHessianIsNotPositiveDefinite) {
+  class Saddle final : public ObjectiveFunction {  // x y: a diagonal of zeros damps nothing
+   public:
+    Eigen::Index size() const override { return 2; }
+    double evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd* gradient,
+                    Eigen::SparseMatrix<double>* hessian) override {
+      if (gradient != nullptr) *gradient = Eigen::Vector2d(x[1], x[0]);
+      if (hessian != nullptr) *hessian = Eigen::Matrix2d{{0, 1}, {1, 0}}.sparseView();
+      return x[0] * x[1];
+    }
+  } function;
+  EXPECT_THAT([&] { GaussNewton().minimize(function, Eigen::Vector2d(0.1, 0.2)); },
               ::testing::ThrowsMessage<SolverError>(::testing::HasSubstr("not positive definite")));
 }
 

@@ -72,7 +72,7 @@ TEST(BorderConstraints, AffineBordersMoveTheBodyAffinely) {
 TEST(BorderConstraints, AreForQuadratics) {
   const auto basis = basis_with({.degree = 3});
   EXPECT_THAT([&] { interpolate_on_edges(*basis, quadratic); },
-              ThrowsMessage<InvalidInput>(HasSubstr("degree 3; it is for degree 2")));
+              ThrowsMessage<InvalidInput>(HasSubstr("degree 3; they are for degree 2")));
 }
 
 }  // namespace

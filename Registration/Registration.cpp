@@ -170,9 +170,10 @@ Registration<Dim>& Registration<Dim>::energy(std::string name, double weight,
 }
 
 template <int Dim>
-Registration<Dim>& Registration<Dim>::landmarks(Landmarks<Dim> landmarks, LandmarkOptions options) {
+Registration<Dim>& Registration<Dim>::landmarks(Landmarks<Dim> landmarks,
+                                                const LandmarkOptions& options) {
   parts_->landmarks = std::move(landmarks);
-  parts_->landmark_options = std::move(options);
+  parts_->landmark_options = options;
   return *this;
 }
 
@@ -195,9 +196,8 @@ Registration<Dim>& Registration<Dim>::optimizer(OptimizerKind kind) {
 }
 
 template <int Dim>
-Registration<Dim>& Registration<Dim>::optimizer(
-    std::shared_ptr<const Optimizer>
-        optimizer) {  // NOLINT(performance-unnecessary-value-param): moved
+// NOLINTNEXTLINE(performance-unnecessary-value-param): moved
+Registration<Dim>& Registration<Dim>::optimizer(std::shared_ptr<const Optimizer> optimizer) {
   parts_->optimizer = std::move(optimizer);
   return *this;
 }

@@ -194,7 +194,7 @@ class Registration {
   /// Adds an energy; its weight is 0 or more. The schedule knows the name "bending".
   Registration& energy(std::string name, double weight, EnergyFactory<Dim> factory);
   /// Pairs to be met, exactly unless the options or a sigma say otherwise.
-  Registration& landmarks(Landmarks<Dim> landmarks, LandmarkOptions options = {});
+  Registration& landmarks(Landmarks<Dim> landmarks, const LandmarkOptions& options = {});
   /// How exact landmarks are eliminated; the results are the same.
   Registration& null_space(NullSpaceKind kind);
   /// The kind of optimizer, with stopping rules that suit the level; the default is Gauss-Newton.

@@ -100,20 +100,20 @@ class FoldingFamily {
     const SplineTransform<Dim> map = transform(s);
     Point<Dim> x = points_[least_at_samples(s).second];
     double least = map.spatial_jacobian(x).determinant();
-    for (double step = 0.02 * basis_->mean_edge_length(); step > 1e-5; step *= 0.5) {
-      for (bool moved = true; moved;) {
-        moved = false;
-        for (int a = 0; a < 2 * Dim; ++a) {
-          Point<Dim> y = x;
-          y[a / 2] += a % 2 == 0 ? step : -step;
-          if (!basis_->contains(y)) continue;
-          const double det = map.spatial_jacobian(y).determinant();
-          if (det >= least) continue;
-          least = det;
-          x = y;
-          moved = true;
-        }
+    double step = 0.02 * basis_->mean_edge_length();
+    while (step > 1e-5) {
+      bool moved = false;
+      for (int a = 0; a < 2 * Dim; ++a) {
+        Point<Dim> y = x;
+        y[a / 2] += a % 2 == 0 ? step : -step;
+        if (!basis_->contains(y)) continue;
+        const double det = map.spatial_jacobian(y).determinant();
+        if (det >= least) continue;
+        least = det;
+        x = y;
+        moved = true;
       }
+      if (!moved) step *= 0.5;
     }
     return x;
   }

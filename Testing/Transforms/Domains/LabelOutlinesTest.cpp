@@ -43,8 +43,8 @@ bool same_points(const Polyline& a, const Polyline& b, double tolerance) {
 
 TEST(LabelOutlines, DiscsAreFoundToAThirdOfAPixelWithTheirArea) {
   const auto raster = testing::square_raster(140);
-  for (const Disc disc : {Disc{{70.3, 69.6}, 50.2}, Disc{{68.9, 71.2}, 33.7}, Disc{{71, 70}, 20.5},
-                          Disc{{70.6, 70.1}, 12.3}}) {
+  for (const Disc& disc : {Disc{{70.3, 69.6}, 50.2}, Disc{{68.9, 71.2}, 33.7}, Disc{{71, 70}, 20.5},
+                           Disc{{70.6, 70.1}, 12.3}}) {
     const auto labels = testing::label_image<Disc>(raster, {disc});
     const auto outlines = label_outlines(raster, labels);
     ASSERT_EQ(outlines.lines.size(), 1U);
@@ -147,7 +147,7 @@ TEST(LabelOutlines, NarrowGapsAreClosedWithAWarning) {
 TEST(LabelOutlines, BodiesAtTheImageBorderGoOnOutsideAndAreCutByTheMesher) {
   const auto raster = testing::square_raster(80);
   const double inside = 0.5 * std::numbers::pi * 400;
-  for (const Point<2> centre : {Point<2>(-0.5, 40), {79.5, 40}, {40, -0.5}, {40, 79.5}}) {
+  for (const Point<2>& centre : {Point<2>(-0.5, 40), {79.5, 40}, {40, -0.5}, {40, 79.5}}) {
     const auto outlines =
         label_outlines(raster, testing::label_image<Disc>(raster, {Disc{centre, 20}}));
     ASSERT_EQ(outlines.lines.size(), 1U);

@@ -93,7 +93,7 @@ TEST(Polygon, IntersectingBoxesMatchBruteForce) {
   std::vector<Point<2>> lower, upper;
   for (int i = 0; i < 60; ++i) {
     lower.emplace_back(uniform(generator), uniform(generator));
-    upper.push_back(lower.back() + 0.2 * Vector<2>(uniform(generator), uniform(generator)));
+    upper.emplace_back(lower.back() + 0.2 * Vector<2>(uniform(generator), uniform(generator)));
   }
   std::vector<std::pair<int, int>> expected;
   for (int i = 0; i < 60; ++i) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "Core/Error.h"
 #include "Testing/Transforms/Domains/SampleDomains.h"
@@ -26,7 +27,7 @@ TEST(StructuredTriangulation, UnionJackDiagonalsPassEvenVertices) {
   for (const auto& edge : topology.edges()) {
     const Point<2>&a = mesh.vertices[edge.vertices[0]], &b = mesh.vertices[edge.vertices[1]];
     if ((b - a).norm() < 1.1) continue;
-    for (const auto& p : {a, b}) EXPECT_EQ(static_cast<int>(p.x() + p.y() + 0.5) % 2, 0);
+    for (const auto& p : {a, b}) EXPECT_EQ(std::lround(p.x() + p.y()) % 2, 0);
   }
 }
 

@@ -30,7 +30,7 @@ std::vector<Point<2>> points_of(const PowellSabinBasis& basis) {
       const auto corners = basis.patch(static_cast<int>(t)).cell(c);
       for (int k = 0; k < 3; ++k) {
         points.push_back(corners[k]);
-        points.push_back(0.5 * (corners[k] + corners[(k + 1) % 3]));
+        points.emplace_back(0.5 * (corners[k] + corners[(k + 1) % 3]));
       }
     }
   }
@@ -297,7 +297,7 @@ TEST_P(PowellSabin, TrianglesOfVerticesAreSmall) {
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     std::vector<Point<2>> points;
     const auto to_hold = sides.points(mesh, split, v);
-    for (const auto& p : to_hold.colwise()) points.push_back(p.head<2>());
+    for (const auto& p : to_hold.colwise()) points.emplace_back(p.head<2>());
     const auto& q = basis.net().vertices[v].corners;
     EXPECT_LT(0.5 * signed_content<2>({q.col(0).head<2>(), q.col(1).head<2>(), q.col(2).head<2>()}),
               2.01 * signed_area(convex_hull(points)));
@@ -334,7 +334,7 @@ TEST(EnclosingTriangle, IsNearlyTheSmallest) {
   testing::Numbers numbers(6);
   for (int trial = 0; trial < 5; ++trial) {
     std::vector<Point<2>> points;
-    for (int k = 0; k < 9; ++k) points.push_back(numbers.columns<2>(1));
+    for (int k = 0; k < 9; ++k) points.emplace_back(numbers.columns<2>(1));
     polygons.push_back(convex_hull(points));
   }
   constexpr int kDirections = 90;

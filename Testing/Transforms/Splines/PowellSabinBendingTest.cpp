@@ -93,8 +93,8 @@ Landmarks landmarks() {
   testing::Numbers numbers(12);
   Landmarks result;
   for (int n = 0; n < 9; ++n) {
-    result.fixed.push_back(Point<2>(kSide / 2, kSide / 2) +
-                           Vector<2>(numbers.columns<2>(1, 0.45 * kSide)));
+    result.fixed.emplace_back(Point<2>(kSide / 2, kSide / 2) +
+                              Vector<2>(numbers.columns<2>(1, 0.45 * kSide)));
     result.shift.push_back(numbers());
   }
   return result;

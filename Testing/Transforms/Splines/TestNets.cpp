@@ -55,7 +55,7 @@ std::vector<Point<2>> border_cloud(const Point<2>& v, const Point<2>& before, co
   std::vector<Point<2>> cloud = {v};
   for (int k = 1; k < degree; ++k) {
     const double shift = k % 2 == 1 ? 0.2 : -0.2;
-    cloud.push_back(v + r * unit(lower + width * (k - 0.5 + shift) / degree));
+    cloud.emplace_back(v + r * unit(lower + width * (k - 0.5 + shift) / degree));
   }
   return cloud;
 }
@@ -113,7 +113,7 @@ KnotNet<2> spread_knots(SimplexMesh<2> mesh, int degree, double alpha, bool same
     }
     const double start = 0.4 + (same_pattern ? 0.0 : 1.7 * static_cast<double>(i));
     std::vector<Point<2>> cloud = {v};
-    for (int k = 1; k < degree; ++k) cloud.push_back(v + r * unit(start + kGoldenAngle * k));
+    for (int k = 1; k < degree; ++k) cloud.emplace_back(v + r * unit(start + kGoldenAngle * k));
     net.clouds.push_back(cloud);
   }
   net.mesh = std::move(mesh);
@@ -172,7 +172,7 @@ KnotNet<2> ring_net(int degree, double alpha, bool body) {
       const Vector<2> d = unit((k + 0.5) * 2 * kPi / kSides);
       const double radius =
           ring < 3 ? 0.5 + 0.5 * ring + (ring == 2 ? 0.1 : 0.0) : 2.2 / d.cwiseAbs().maxCoeff();
-      mesh.vertices.push_back(radius * d);
+      mesh.vertices.emplace_back(radius * d);
     }
   }
   for (int k = 0; k < kSides; ++k) {
@@ -242,7 +242,7 @@ KnotNet<3> tetrahedral_net(int degree, double alpha) {
       if (i < 8)
         d = d.cwiseProduct(
             Vector<3>((v.array() > 5).select(Vector<3>::Ones(), -Vector<3>::Ones())));
-      cloud.push_back(v + r * (k % 2 == 0 && i == 8 ? -1.0 : 1.0) * d.normalized());
+      cloud.emplace_back(v + r * (k % 2 == 0 && i == 8 ? -1.0 : 1.0) * d.normalized());
     }
     net.clouds.push_back(cloud);
   }
@@ -276,7 +276,7 @@ std::vector<Point<2>> special_points(const KnotNet<2>& net) {
     const auto v = simplex_corners(net.mesh, static_cast<int>(t));
     points.push_back(simplex_centroid(net.mesh, static_cast<int>(t)));
     for (int k = 0; k < 3; ++k) {
-      for (double s : {0.03, 0.5, 0.7}) points.push_back((1 - s) * v[k] + s * v[(k + 1) % 3]);
+      for (double s : {0.03, 0.5, 0.7}) points.emplace_back((1 - s) * v[k] + s * v[(k + 1) % 3]);
     }
   }
   for (const auto& cloud : net.clouds) {

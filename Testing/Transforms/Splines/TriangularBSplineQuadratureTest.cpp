@@ -50,7 +50,8 @@ std::vector<KnotNet<2>> nets_of_degree(int degree) {
 KnotNet<2> creased_square(int degree) {
   auto net = testing::spread_knots(testing::grid_mesh(2, 2), degree, 0.4);
   for (int k = 1; k < degree; ++k) {
-    net.clouds[4][k] = Point<2>(10.0, 10.0 + (k % 2 == 1 ? 1.2 : -1.0) / ((k + 1) / 2));
+    const int pair = (k + 1) / 2;
+    net.clouds[4][k] = Point<2>(10.0, 10.0 + (k % 2 == 1 ? 1.2 : -1.0) / pair);
     net.clouds[1][k] = Point<2>(10.0, -1.0 + 0.2 * k);
     net.clouds[7][k] = Point<2>(10.0, 21.0 - 0.2 * k);
   }

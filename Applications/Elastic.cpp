@@ -30,7 +30,7 @@ Exit code 5 where no equilibrium is found: the last one on the way is written, a
 got, and where it failed; and where the refinement fails: what the pairs do is written.
 
 Example: last year's mammogram onto this year's, with pairs inside the breast beside those along the skin
-  crease elastic --fixed 2025.dcm --moving 2024.dcm --pairs vessels.csv --contour-pairs 29 --output compared)";
+  crease elastic --fixed 2025.dcm --moving 2024.dcm --pairs vessels.csv --contour-pairs 40 --output compared)";
 
 std::vector<std::string> input_files(const ElasticCommandOptions& o) {
   std::vector<std::string> files = {o.fixed, o.moving};

@@ -48,7 +48,7 @@ std::vector<Option> input_options(ElasticCommandOptions& o) {
       {.name = "contour-pairs",
        .target = &o.contour_pairs,
        .placeholder = "N",
-       .help = "Pairs at equal arc length along both skin lines (29, or none beside --pairs)",
+       .help = "Pairs at equal arc length along both skin lines (40, or none beside --pairs)",
        .minimum = 0,
        .maximum = 1000},
       {.name = "pectoral-pairs",

@@ -7,6 +7,7 @@
 #include "Applications/MaterialOptions.h"
 #include "Applications/Option.h"
 #include "Applications/RunOptions.h"
+#include "Registration/Mammogram/ContourPairs.h"
 
 namespace crease {
 
@@ -49,7 +50,9 @@ struct ElasticCommandOptions {
     return pectoral_source() != "auto" && pectoral_source() != "none";
   }
   /// Pairs along the skin line, found in the images.
-  int num_contour_pairs() const { return contour_pairs.value_or(pairs.empty() ? 29 : 0); }
+  int num_contour_pairs() const {
+    return contour_pairs.value_or(pairs.empty() ? ContourPairOptions{}.count : 0);
+  }
   /// Pairs along the edge of the pectoral muscle, where it is found in both.
   int num_pectoral_pairs() const {
     return pectoral_pairs.value_or(num_contour_pairs() > 0 && pectoral_source() != "none" ? 4 : 0);

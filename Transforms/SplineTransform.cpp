@@ -2,6 +2,7 @@
 
 #include "Core/Error.h"
 #include "Transforms/ParameterCheck.h"
+#include "Transforms/Splines/Continuation.h"
 #include "Transforms/Splines/SplineSampler.h"
 #include "Transforms/TransformSampler.h"
 
@@ -10,11 +11,11 @@ namespace {
 
 /// Weights w with u(x) = sum_i w_i phi_i inside and outside the domain.
 template <int Dim>
-BasisValues<Dim> continued(const SplineBasis<Dim>& basis, const Point<Dim>& x) {
+BasisValues<Dim> continued(const SplineBasis<Dim>& basis, double edge_length, const Point<Dim>& x) {
   if (basis.contains(x)) return basis.evaluate(x);
   const Point<Dim> p = basis.nearest_point(x);
   auto at_p = basis.evaluate(p, 1);
-  at_p.values += at_p.gradients.transpose() * (x - p);
+  at_p.values += at_p.gradients.transpose() * Continuation<Dim>(x - p, edge_length).step;
   return at_p;
 }
 
@@ -61,6 +62,7 @@ SplineTransform<InDim, OutDim>::SplineTransform(std::shared_ptr<const SplineBasi
     : basis_(std::move(basis)), affine_(affine) {
   if (!basis_) throw InvalidInput("SplineTransform: the basis is null.");
   if (!affine_.finite()) throw InvalidInput("SplineTransform: the affine part is not finite.");
+  edge_length_ = basis_->mean_edge_length();
   control_points_.setZero(OutDim, basis_->num_control_points());
   sum_ = basis_->sum(control_points_);
 }
@@ -111,22 +113,27 @@ Point<OutDim> SplineTransform<InDim, OutDim>::map(const Point<InDim>& x) const {
   if (basis_->contains(x)) return affine_(x) + displacement(x, 0).value;
   const Point<InDim> p = basis_->nearest_point(x);
   const Jet u = displacement(p, 1);
-  return affine_(x) + u.value + u.gradient * (x - p);
+  return affine_(x) + u.value + u.gradient * Continuation<InDim>(x - p, edge_length_).step;
 }
 
 template <int InDim, int OutDim>
 Matrix<OutDim, InDim> SplineTransform<InDim, OutDim>::spatial_jacobian(
     const Point<InDim>& x) const {
-  return affine_.linear + displacement(basis_->nearest_point(x), 1).gradient;
+  return sample(x).jacobian;
 }
 
 template <int InDim, int OutDim>
 typename Transform<InDim, OutDim>::Sample SplineTransform<InDim, OutDim>::sample(
     const Point<InDim>& x) const {
-  const bool inside = basis_->contains(x);
-  const Point<InDim> p = inside ? x : basis_->nearest_point(x);
+  if (basis_->contains(x)) {
+    const Jet u = displacement(x, 1);
+    return {affine_(x) + u.value, affine_.linear + u.gradient, true};
+  }
+  const Point<InDim> p = basis_->nearest_point(x);
   const Jet u = displacement(p, 1);
-  return {affine_(x) + u.value + u.gradient * (x - p), affine_.linear + u.gradient, inside};
+  const Continuation<InDim> on(x - p, edge_length_);
+  return {affine_(x) + u.value + u.gradient * on.step, affine_.linear + u.gradient * on.stretch,
+          false};
 }
 
 template <int InDim, int OutDim>
@@ -169,7 +176,7 @@ void SplineTransform<InDim, OutDim>::add_adjoint(std::span<const Point<InDim>> x
   check_adjoint("SplineTransform", x.size(), forces.size(), gradient.size(), num_parameters());
   Eigen::Map<ControlPoints<OutDim>> columns(gradient.data(), OutDim, control_points_.cols());
   for (std::size_t k = 0; k < x.size(); ++k) {
-    const auto here = continued(*basis_, x[k]);
+    const auto here = continued(*basis_, edge_length_, x[k]);
     for (std::size_t n = 0; n < here.control_points.size(); ++n) {
       columns.col(here.control_points[n]) += here.values[n] * forces[k];
     }

@@ -14,9 +14,9 @@ namespace crease {
 /// Parameters are the control points phi (OutDim x n, mm), control point by control point: parameter
 /// OutDim * i + a is coordinate a of phi_i. They start at zero, so that T = A.
 ///
-/// Outside the domain u continues linearly from the domain's nearest point p:
-/// u(x) = u(p) + grad u(p) (x - p). There `spatial_jacobian` is that of p (how p moves with x is left
-/// out), and the second derivatives are those of p.
+/// Outside the domain u goes on from the domain's nearest point p, no farther along its gradient than a
+/// quarter of a mesh edge (Continuation). There `spatial_jacobian` leaves out how grad u(p) changes with p, and the
+/// second derivatives are those of p.
 ///
 /// Source: dissertation, (3.1).
 template <int InDim, int OutDim = InDim>
@@ -56,6 +56,7 @@ class SplineTransform final : public Transform<InDim, OutDim> {
   Jet displacement(const Point<InDim>& p, int derivatives) const;
 
   std::shared_ptr<const SplineBasis<InDim>> basis_;
+  double edge_length_;  // the mean one, mm
   Affine affine_;
   ControlPoints<OutDim> control_points_;
   std::shared_ptr<const SplineSum<InDim>> sum_;  // null: the basis offers none

@@ -9,8 +9,9 @@
 namespace crease {
 
 struct ContourPairOptions {
-  int count =
-      29;  ///< pairs, ends included; fewer come back where known pairs say that the film cut an end
+  /// Pairs, ends included; fewer come back where known pairs say that the film cut an end. They are close
+  /// enough for the skin not to dent between them, where nothing holds it.
+  int count = 40;
   bool use_nipples = true;  ///< where both are known they are a pair
   /// h: [0, 1] -> [0, 1], monotone: the share of the moving contour that belongs to a share of the fixed one;
   /// null: arc length. With it nipples are not used: h should pass through them itself.
@@ -34,7 +35,7 @@ struct ContourPairs {
 /// is a pair and splits the contours in two pieces, which share the other pairs by their lengths. Pairs known
 /// beforehand split them further. Beyond the outermost of these at an end, if it lies in that quarter of the fixed
 /// contour, both contours go on equally long, and pairs past the end of either are left out: the film may cut them differently.
-/// Source: dissertation, chapter 4.2 (29 and 33 pairs).
+/// Source: dissertation, chapter 4.2 (there 29 and 33 pairs).
 /// @throws InvalidInput for fewer than 3 pairs, empty contours, or a stretch that is not monotone from 0 to 1.
 ContourPairs contour_pairs(const MammogramAnatomy& fixed, const MammogramAnatomy& moving,
                            const ContourPairOptions& options = {});

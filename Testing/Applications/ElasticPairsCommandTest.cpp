@@ -206,10 +206,10 @@ TEST_F(ElasticMammograms, GivenPairsDisplaceThoseFoundAlongTheSkin) {
   std::ofstream(in("seen.csv")) << "fixed_x,fixed_y,moving_x,moving_y\n"
                                 << found.fixed[4].x() << ',' << found.fixed[4].y() << ','
                                 << found.moving[4].x() << ',' << found.moving[4].y() << '\n';
-  const auto result = result_of(run({"--contour-pairs", "29", "--pairs", in("seen.csv")}));
+  const auto result = result_of(run({"--contour-pairs", "40", "--pairs", in("seen.csv")}));
   EXPECT_EQ(result["pairs"]["given"], 1);
-  EXPECT_GE(result["pairs"]["contour"], 26);  // without it, and an end that the film may have cut
-  EXPECT_LE(result["pairs"]["contour"], 28);
+  EXPECT_GE(result["pairs"]["contour"], 37);  // without it, and an end that the film may have cut
+  EXPECT_LE(result["pairs"]["contour"], 39);
   EXPECT_EQ(result["pairs"]["pectoral"], 4);
   EXPECT_THAT(
       warnings_of(result),

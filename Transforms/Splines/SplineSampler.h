@@ -14,9 +14,9 @@ template <int Dim>
 class SplineSampler {
  public:
   virtual ~SplineSampler() = default;
-  /// Column k: u at x[k], then du/dx_1, .. du/dx_Dim, R (1 + Dim) numbers for phi of R rows. Outside the
-  /// domain the gradient is that of its nearest point p, and u continues from there: u(p) + grad u (x - p).
-  /// @param jets    R (1 + Dim) x as many columns as points.
+  /// Column k: u at x[k], then du/dx_1, .. du/dx_Dim, r (1 + Dim) numbers for phi of r rows. Outside the
+  /// domain u goes on as a Continuation.
+  /// @param jets    r (1 + Dim) x as many columns as points.
   /// @param inside  1 where the domain holds the point, else 0.
   virtual void sample(std::span<const Point<Dim>> x, Eigen::Ref<Eigen::MatrixXd> jets,
                       std::span<std::uint8_t> inside) const = 0;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "Core/Parallel.h"
+#include "Transforms/Splines/Continuation.h"
 #include "Transforms/Splines/TriangularBSplineEvaluator.h"
 
 namespace crease {
@@ -139,8 +140,11 @@ void TriangularBSplineSampler::sample_outside(const Point<2>& x, Jet jet) const 
   const auto& [a, b] = border_.corners(edge);
   const Vector<2> along = b - a, away = x - p;
   pieces_[edge].evaluate(std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0), jet);
+  const Continuation<2> on(away, basis_.mean_edge_length());
   const Eigen::Index rows = phi_.rows();
-  jet.head(rows) += away.x() * jet.segment(rows, rows) + away.y() * jet.tail(rows);
+  auto gradient = jet.tail(2 * rows).reshaped(rows, 2);
+  jet.head(rows) += gradient * on.step;
+  gradient = (gradient * on.stretch).eval();
 }
 
 void TriangularBSplineSampler::sample(std::span<const Point<2>> x, Eigen::Ref<Eigen::MatrixXd> jets,

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "Testing/Transforms/Splines/TestNets.h"
+#include "Transforms/Splines/Continuation.h"
 #include "Transforms/Splines/SplineSampler.h"
 #include "Transforms/Splines/TriangularBSplineBasis.h"
 
@@ -39,7 +40,9 @@ Eigen::VectorXd jet_at(const TriangularBSplineBasis<2>& basis, const Eigen::Matr
     jet.col(0) += here.values[n] * column;
     jet.rightCols<2>() += column * here.gradients.col(n).transpose();
   }
-  jet.col(0) += jet.rightCols<2>() * (x - p);
+  const Continuation<2> on(x - p, basis.mean_edge_length());
+  jet.col(0) += jet.rightCols<2>() * on.step;
+  jet.rightCols<2>() = (jet.rightCols<2>() * on.stretch).eval();
   return jet.reshaped();
 }
 

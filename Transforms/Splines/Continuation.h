@@ -26,7 +26,9 @@ struct Continuation {
     const double s = reach / (reach + distance);
     step = s * away;
     stretch.setIdentity();
-    if (distance > 0) stretch -= (1 - s * s) / (distance * distance) * away * away.transpose();
+    if (distance == 0) return;
+    const Vector<Dim> direction = away / distance;
+    stretch -= (1 - s * s) * direction * direction.transpose();
   }
 };
 
